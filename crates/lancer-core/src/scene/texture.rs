@@ -1,0 +1,163 @@
+//! S as a function of the texture coordinates.
+
+use crate::color::{Rgb, srgb_to_linear};
+use crate::geometry::DVec2;
+use std::fmt;
+use std::sync::{Arc, LazyLock};
+
+/// The colour of a surface, by texture coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texture {
+    /// The same everywhere.
+    Solid(Rgb),
+    /// Squares of two colours, `size` wide in texture coordinates. (0, 0) is the lower left corner of an even
+    /// square.
+    Checker {
+        /// The colour of the square at the origin.
+        even: Rgb,
+        /// The colour of its four neighbours.
+        odd: Rgb,
+        /// The length of a square's edge, above 0.
+        size: f64,
+    },
+    /// An image, repeated.
+    Image(Arc<ImageTexture>),
+}
+
+impl From<Rgb> for Texture {
+    fn from(color: Rgb) -> Self {
+        Self::Solid(color)
+    }
+}
+
+impl Texture {
+    /// The colour at texture coordinates `uv`.
+    pub fn color_at(&self, uv: DVec2) -> Rgb {
+        match self {
+            Self::Solid(color) => *color,
+            Self::Checker { even, odd, size } => {
+                let square = (uv / *size).floor();
+                if (square.x + square.y).rem_euclid(2.0) == 0.0 { *even } else { *odd }
+            }
+            Self::Image(image) => image.color_at(uv),
+        }
+    }
+}
+
+/// Why an image is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("an image of {width} x {height} pixels cannot have {found} texels")]
+pub struct ImageError {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Texels given.
+    pub found: usize,
+}
+
+/// An 8-bit sRGB image; shared, since it may be large.
+#[derive(Clone, PartialEq)]
+pub struct ImageTexture {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 3]>,
+}
+
+impl ImageTexture {
+    /// An image from its rows, top row first. Shape: `texels: [height * width][3]`, sRGB-encoded.
+    ///
+    /// # Errors
+    /// [`ImageError`] where a side is 0 or the number of texels is not their product.
+    pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Result<Self, ImageError> {
+        let expected = u64::from(width) * u64::from(height);
+        if expected == 0 || texels.len() as u64 != expected {
+            return Err(ImageError { width, height, found: texels.len() });
+        }
+        Ok(Self { width, height, texels })
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The colour at `uv`, linear: bilinear between texel centres, repeated beyond [0, 1).
+    ///
+    /// (0, 0) is the lower left corner of the image and (1, 1) the upper right one.
+    pub fn color_at(&self, uv: DVec2) -> Rgb {
+        if !uv.is_finite() {
+            return Rgb::BLACK;
+        }
+        let x = (uv.x - uv.x.floor()) * f64::from(self.width) - 0.5;
+        let y = (1.0 - (uv.y - uv.y.floor())) * f64::from(self.height) - 0.5;
+        let (column, row) = (x.floor(), y.floor());
+        let (right, down) = (x - column, y - row);
+        let texel = |dx: f64, dy: f64| self.texel(column + dx, row + dy);
+        (texel(0.0, 0.0) * (1.0 - right) + texel(1.0, 0.0) * right) * (1.0 - down)
+            + (texel(0.0, 1.0) * (1.0 - right) + texel(1.0, 1.0) * right) * down
+    }
+
+    /// The texel at a column and row, which wrap around.
+    fn texel(&self, column: f64, row: f64) -> Rgb {
+        let wrap = |i: f64, n: u32| i.rem_euclid(f64::from(n)) as usize % n as usize;
+        let index = wrap(row, self.height) * self.width as usize + wrap(column, self.width);
+        let [r, g, b] = self.texels[index];
+        let linear = |encoded: u8| SRGB_TO_LINEAR[usize::from(encoded)];
+        Rgb::new(linear(r), linear(g), linear(b))
+    }
+}
+
+impl fmt::Debug for ImageTexture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "ImageTexture({} x {})", self.width, self.height)
+    }
+}
+
+static SRGB_TO_LINEAR: LazyLock<[f64; 256]> =
+    LazyLock::new(|| std::array::from_fn(|encoded| srgb_to_linear(encoded as f64 / 255.0)));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_by_one() -> ImageTexture {
+        ImageTexture::new(2, 1, vec![[255, 0, 0], [0, 0, 255]]).unwrap()
+    }
+
+    #[test]
+    fn texel_centers_give_the_texels_and_between_them_lies_the_mean() {
+        let image = two_by_one();
+        assert_eq!(image.color_at(DVec2::new(0.25, 0.5)), Rgb::new(1.0, 0.0, 0.0));
+        assert_eq!(image.color_at(DVec2::new(0.75, 0.5)), Rgb::new(0.0, 0.0, 1.0));
+        assert_eq!(image.color_at(DVec2::new(0.5, 0.5)), Rgb::new(0.5, 0.0, 0.5));
+    }
+
+    #[test]
+    fn images_repeat_and_v_runs_upward() {
+        let image = two_by_one();
+        assert_eq!(image.color_at(DVec2::new(-0.75, 7.5)), Rgb::new(1.0, 0.0, 0.0));
+        let column = ImageTexture::new(1, 2, vec![[255, 255, 255], [0, 0, 0]]).unwrap();
+        assert_eq!(column.color_at(DVec2::new(0.5, 0.75)), Rgb::WHITE);
+        assert_eq!(column.color_at(DVec2::new(0.5, 0.25)), Rgb::BLACK);
+    }
+
+    #[test]
+    fn checker_alternates_across_the_origin() {
+        let checker = Texture::Checker { even: Rgb::WHITE, odd: Rgb::BLACK, size: 2.0 };
+        assert_eq!(checker.color_at(DVec2::new(1.0, 1.0)), Rgb::WHITE);
+        assert_eq!(checker.color_at(DVec2::new(-1.0, 1.0)), Rgb::BLACK);
+        assert_eq!(checker.color_at(DVec2::new(-1.0, -1.0)), Rgb::WHITE);
+    }
+
+    #[test]
+    fn an_image_needs_all_of_its_texels() {
+        assert!(ImageTexture::new(2, 2, vec![[0; 3]; 3]).is_err());
+        assert!(ImageTexture::new(0, 0, vec![]).is_err());
+    }
+}

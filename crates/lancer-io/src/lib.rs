@@ -1,0 +1,7 @@
+//! Bytes to scenes, and images to bytes.
+//!
+//! It knows neither traversal nor threads.
+
+pub mod diagnostics;
+pub mod limits;
+pub mod resolver;
