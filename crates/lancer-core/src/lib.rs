@@ -9,11 +9,18 @@
 //!    the objects.
 //! 3. [`render`]: tiles of pixels traced by [`integrator`] and lit by [`shade`], into a [`film`].
 
+pub mod accel;
 pub mod camera;
 pub mod color;
 pub mod film;
 pub mod geometry;
+pub mod integrator;
 pub mod mesh;
+pub mod render;
+pub mod sampling;
 pub mod scene;
+pub mod shade;
+pub mod shape;
+pub mod world;
 
 pub use color::Rgb;

@@ -25,7 +25,7 @@ impl Bounds {
 
     /// The least box around some points.
     pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, point| bounds.including(point))
+        points.into_iter().fold(Self::EMPTY, Self::including)
     }
 
     /// The least box around this one and a point.

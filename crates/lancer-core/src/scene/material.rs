@@ -8,6 +8,10 @@ use crate::color::Rgb;
 pub struct MaterialId(pub(super) u32);
 
 impl MaterialId {
+    pub(crate) fn from_index(index: usize) -> Self {
+        Self(u32::try_from(index).expect("fewer than 2^32 materials fit in memory"))
+    }
+
     /// Its place in [`Scene::materials`](super::Scene::materials).
     pub fn index(self) -> usize {
         self.0 as usize

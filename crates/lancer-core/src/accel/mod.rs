@@ -1,0 +1,45 @@
+//! Structures that find what a ray may meet. They know no material, camera or pixel.
+
+mod aabb;
+pub mod kd_tree;
+
+pub use aabb::Aabb;
+pub use kd_tree::{BuildError, KdSettings, KdTree};
+
+/// Which structure finds hits. It changes the time that a picture takes, and nothing in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Accelerator {
+    /// A k-d tree over the objects, and one over the triangles of each mesh.
+    #[default]
+    KdTree,
+    /// None: every ray is tested against every object and every triangle. The oracle of the tests.
+    BruteForce,
+}
+
+impl Accelerator {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::KdTree, Self::BruteForce];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::KdTree => "kd-tree",
+            Self::BruteForce => "brute-force",
+        }
+    }
+}
+
+/// Things with boxes, over which a tree is built.
+pub trait Primitives: Sync {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// The box around one.
+    fn bounds(&self, primitive: u32) -> Aabb;
+
+    /// The box around the part of a primitive inside of `cell`, itself inside of `cell`; none where they do not
+    /// meet. It may be larger than that part, and never smaller.
+    fn clip(&self, primitive: u32, cell: &Aabb) -> Option<Aabb> {
+        self.bounds(primitive).intersection(cell)
+    }
+}

@@ -1,0 +1,57 @@
+//! How a render is watched and stopped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Asks a render to stop; shared between who asks and who renders.
+#[derive(Clone, Debug, Default)]
+pub struct CancelToken(Arc<AtomicBool>);
+
+impl CancelToken {
+    /// Asks for the end. It cannot be taken back.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the end was asked for.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// A finished part of the image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// The column of its left pixels, counted in the image that is rendered.
+    pub x: u32,
+    /// The row of its top pixels.
+    pub y: u32,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear RGB. Shape: `[height * width][3]`, top row first.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// Who watches a render.
+pub struct Control<'a> {
+    /// Stops it; looked at before every pixel.
+    pub cancel: CancelToken,
+    /// Called with each tile when it is done, from any thread, and with the rays that it took.
+    pub on_tile: &'a (dyn Fn(&Tile, &crate::integrator::RayCounts) + Sync),
+    /// The side of a tile in pixels, at least 1. It changes nothing in the image.
+    pub tile_size: u32,
+}
+
+impl Control<'_> {
+    /// Small enough to share a small image between threads and to show progress, large enough that a thread's
+    /// turn costs nothing beside it. Untuned.
+    pub const DEFAULT_TILE_SIZE: u32 = 32;
+}
+
+impl Default for Control<'_> {
+    fn default() -> Self {
+        Self { cancel: CancelToken::default(), on_tile: &|_, _| {}, tile_size: Self::DEFAULT_TILE_SIZE }
+    }
+}

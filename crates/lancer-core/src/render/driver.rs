@@ -1,0 +1,194 @@
+//! Tiles to threads, threads to film.
+
+use super::{Control, Tile};
+use crate::camera::{Camera, CameraError, Projection};
+use crate::color::Rgb;
+use crate::film::Image;
+use crate::integrator::{RayCounts, Scratch, Silent, Whitted};
+use crate::sampling::{Key, subpixel_centers};
+use crate::scene::{Settings, SettingsError};
+use crate::world::{Media, World};
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
+
+/// A part of the image, in pixels from its top left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// The first column.
+    pub x: u32,
+    /// The first row.
+    pub y: u32,
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+/// A finished picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Render {
+    /// The image, or the region of it that was asked for.
+    pub image: Image,
+    /// The rays that it took.
+    pub rays: RayCounts,
+}
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The camera makes no picture.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The region is empty or leaves the image.
+    #[error("the region {}x{} at {},{} is empty or leaves the image of {width} x {height}", .region.width, .region.height, .region.x, .region.y)]
+    Region {
+        /// The region.
+        region: Region,
+        /// Pixels in a row of the image.
+        width: u32,
+        /// Rows of the image.
+        height: u32,
+    },
+    /// It was cancelled.
+    #[error("the render was cancelled")]
+    Cancelled,
+    /// A thread panicked: a bug of this renderer.
+    #[error(
+        "a bug in the renderer at pixel {x},{y}: {message}; render that pixel alone with --region {x},{y},1,1 to repeat it"
+    )]
+    Panicked {
+        /// The pixel's column.
+        x: u32,
+        /// The pixel's row.
+        y: u32,
+        /// What the panic said.
+        message: String,
+    },
+}
+
+/// Renders the image of a camera, or a region of it, on the threads of the current rayon pool.
+///
+/// The bytes of the image are a function of `world`, `camera`, `settings` and `region` alone; a region has the
+/// bytes that the whole image has there.
+///
+/// # Errors
+/// See [`RenderError`].
+pub fn render(
+    world: &World,
+    camera: &Camera,
+    settings: &Settings,
+    region: Option<Region>,
+    control: &Control,
+) -> Result<Render, RenderError> {
+    settings.validate()?;
+    let (width, height) = (settings.width, settings.height);
+    let region = region.unwrap_or(Region { x: 0, y: 0, width, height });
+    if !fits(&region, width, height) {
+        return Err(RenderError::Region { region, width, height });
+    }
+    let job = Job {
+        integrator: Whitted::new(world, settings),
+        projection: camera.project(width, height)?,
+        media: Media::around(world, camera.eye),
+        samples: settings.samples,
+        region,
+        control,
+        panic: OnceLock::new(),
+    };
+    let tiles = tiles_of(&region, control.tile_size.max(1))
+        .into_par_iter()
+        .map(|area| job.tile(area))
+        .collect::<Option<Vec<_>>>();
+    let Some(tiles) = tiles else {
+        return Err(job.panic.into_inner().unwrap_or(RenderError::Cancelled));
+    };
+    let mut image = Image::black(region.width, region.height);
+    let mut rays = RayCounts::default();
+    for (tile, counts) in tiles {
+        image.put(tile.x, tile.y, tile.width, &tile.pixels);
+        rays += counts;
+    }
+    Ok(Render { image, rays })
+}
+
+fn fits(region: &Region, width: u32, height: u32) -> bool {
+    let inside = |start: u32, length: u32, end: u32| {
+        length > 0 && start.checked_add(length).is_some_and(|stop| stop <= end)
+    };
+    inside(region.x, region.width, width) && inside(region.y, region.height, height)
+}
+
+/// The tiles of a region in reading order, in coordinates of the region.
+fn tiles_of(region: &Region, size: u32) -> Vec<Region> {
+    let starts = |length: u32| (0..length).step_by(size as usize);
+    let part = |start: u32, length: u32| size.min(length - start);
+    starts(region.height)
+        .flat_map(|y| starts(region.width).map(move |x| (x, y)))
+        .map(|(x, y)| Region { x, y, width: part(x, region.width), height: part(y, region.height) })
+        .collect()
+}
+
+struct Job<'a> {
+    integrator: Whitted<'a>,
+    projection: Projection,
+    media: Media,
+    samples: u32,
+    region: Region,
+    control: &'a Control<'a>,
+    /// The first panic; it stops all threads.
+    panic: OnceLock<RenderError>,
+}
+
+impl Job<'_> {
+    /// A tile and the rays that it took; none where the render was cancelled or a thread panicked.
+    fn tile(&self, area: Region) -> Option<(Tile, RayCounts)> {
+        let mut counts = RayCounts::default();
+        let mut scratch = Scratch::default();
+        let mut pixels = Vec::with_capacity(area.width as usize * area.height as usize);
+        for y in area.y..area.y + area.height {
+            for x in area.x..area.x + area.width {
+                if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
+                    return None;
+                }
+                let (x, y) = (x + self.region.x, y + self.region.y);
+                // After a panic the scratch and the counts are dropped with the tile.
+                let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut scratch, &mut counts)));
+                match pixel {
+                    Ok(pixel) => pixels.push(pixel),
+                    Err(panic) => {
+                        let message = panic_message(panic.as_ref()).to_owned();
+                        // A second thread's panic is the same news.
+                        let _ = self.panic.set(RenderError::Panicked { x, y, message });
+                        return None;
+                    }
+                }
+            }
+        }
+        let tile = Tile { x: area.x, y: area.y, width: area.width, height: area.height, pixels };
+        (self.control.on_tile)(&tile, &counts);
+        Some((tile, counts))
+    }
+
+    /// The mean of the pixel's subpixels.
+    fn pixel(&self, x: u32, y: u32, scratch: &mut Scratch, counts: &mut RayCounts) -> [f32; 3] {
+        let mut sum = Rgb::BLACK;
+        for (subpixel, (dx, dy)) in subpixel_centers(self.samples).enumerate() {
+            let ray = self.projection.ray(f64::from(x) + dx, f64::from(y) + dy);
+            let key = Key::camera(x, y, subpixel as u32);
+            sum += self.integrator.radiance(ray, &self.media, key, scratch, counts, &mut Silent);
+        }
+        (sum * (1.0 / f64::from(self.samples * self.samples))).to_array().map(|channel| channel as f32)
+    }
+}
+
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {
+    panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("no message")
+}

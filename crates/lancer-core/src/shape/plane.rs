@@ -1,0 +1,32 @@
+//! y = 0, unbounded, with the normal +Y.
+
+use super::{Hit, SurfacePoint};
+use crate::geometry::{Bounds, DVec2, DVec3, Ray};
+
+/// All of space: it has no finite box.
+pub fn bounds() -> Bounds {
+    Bounds::UNBOUNDED
+}
+
+/// The nearest hit.
+pub fn intersect(ray: &Ray) -> Option<Hit> {
+    let t = -ray.origin.y / ray.direction.y;
+    (t > 0.0 && t < ray.t_max).then_some(Hit { t, primitive: 0 })
+}
+
+/// Whether anything is hit.
+pub fn occluded(ray: &Ray) -> bool {
+    intersect(ray).is_some()
+}
+
+/// The surface at a hit; u = x and v = -z, so that seen from above with +x to the right, v runs upward.
+pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
+    let on_ray = ray.at(hit.t);
+    SurfacePoint {
+        point: DVec3::new(on_ray.x, 0.0, on_ray.z),
+        point_error: DVec3::ZERO,
+        geometric_normal: DVec3::Y,
+        shading_normal: DVec3::Y,
+        uv: DVec2::new(on_ray.x, -on_ray.z),
+    }
+}

@@ -1,0 +1,115 @@
+//! One triangle of a mesh.
+//!
+//! The test is watertight: each edge function is computed from the same rounded numbers, up to their sign, by
+//! the two triangles that share the edge, so that no ray passes between them; a ray through an edge or a
+//! vertex meets both. Vertices are `f32`, arithmetic is `f64`: the products under the edge functions are then
+//! good to 2^-52 of their size, and no fallback to a wider type is needed.
+//!
+//! Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection" (JCGT 2(1), 2013). The edge functions'
+//! signs can never contradict the exact ones of the sheared vertices, since rounding is monotonic; they can
+//! only become zero, which counts as inside.
+
+use super::SurfacePoint;
+use crate::geometry::error::gamma;
+use crate::geometry::{DVec2, DVec3, Ray};
+use crate::mesh::Mesh;
+
+/// A ray made ready for the triangles of one mesh: the axes permuted and sheared so that it runs along +z.
+#[derive(Clone, Copy, Debug)]
+pub struct ShearedRay {
+    origin: DVec3,
+    /// The axis that the ray follows most, and the two others in an order that keeps triangles' winding.
+    axes: [usize; 3],
+    /// Shear of x, shear of y, scale of z.
+    shear: DVec3,
+}
+
+/// Where a ray meets a triangle's plane inside of its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleHit {
+    /// The ray's parameter there.
+    pub t: f64,
+    /// Weights of the three corners; they add up to 1.
+    pub barycentric: [f64; 3],
+}
+
+impl ShearedRay {
+    /// Prepares a ray; its direction must not be zero.
+    pub fn new(ray: &Ray) -> Self {
+        let size = ray.direction.abs();
+        let z = if size.x > size.y && size.x > size.z {
+            0
+        } else if size.y > size.z {
+            1
+        } else {
+            2
+        };
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        if ray.direction[z] < 0.0 {
+            std::mem::swap(&mut x, &mut y);
+        }
+        let d = ray.direction;
+        Self { origin: ray.origin, axes: [x, y, z], shear: DVec3::new(d[x] / d[z], d[y] / d[z], 1.0 / d[z]) }
+    }
+
+    /// The hit with the triangle at any t, behind the origin too.
+    ///
+    /// A triangle seen exactly edge-on is not hit; in a closed mesh its neighbours are.
+    #[inline]
+    pub fn intersect(&self, corners: [DVec3; 3]) -> Option<TriangleHit> {
+        let [a, b, c] = corners.map(|corner| self.sheared(corner));
+        let u = c.x * b.y - c.y * b.x;
+        let v = a.x * c.y - a.y * c.x;
+        let w = b.x * a.y - b.y * a.x;
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let determinant = u + v + w;
+        if determinant == 0.0 {
+            return None;
+        }
+        let t = self.shear.z * (u * a.z + v * b.z + w * c.z) / determinant;
+        Some(TriangleHit { t, barycentric: [u / determinant, v / determinant, w / determinant] })
+    }
+
+    #[inline]
+    fn sheared(&self, point: DVec3) -> DVec3 {
+        let [x, y, z] = self.axes;
+        let p = point - self.origin;
+        DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], p[z])
+    }
+}
+
+/// The surface at a hit with triangle `primitive` of `mesh`.
+///
+/// The shading normal is the interpolated vertex normal, turned to the geometric one's side; the texture
+/// coordinates are interpolated, or are the barycentric ones of the last two corners where the mesh has none.
+pub fn surface(ray: &Ray, mesh: &Mesh, primitive: u32) -> SurfacePoint {
+    let corners = mesh.corners(primitive);
+    let [u, v, w] = ShearedRay::new(ray).intersect(corners).map_or([1.0, 0.0, 0.0], |hit| hit.barycentric);
+    let [a, b, c] = corners;
+    let across = (b - a).cross(c - a);
+    let geometric_normal = if across == DVec3::ZERO { -ray.direction } else { across };
+    SurfacePoint {
+        point: a * u + b * v + c * w,
+        point_error: mesh.bounds().magnitude() * gamma(ON_TRIANGLE),
+        geometric_normal,
+        shading_normal: mesh
+            .corner_normals(primitive)
+            .and_then(|[a, b, c]| shading_normal(a * u + b * v + c * w, geometric_normal))
+            .unwrap_or(geometric_normal),
+        uv: mesh.corner_uvs(primitive).map_or(DVec2::new(v, w), |[a, b, c]| a * u + b * v + c * w),
+    }
+}
+
+/// The interpolated normal on the geometric one's side, or none where it vanishes.
+fn shading_normal(interpolated: DVec3, geometric_normal: DVec3) -> Option<DVec3> {
+    let unit = interpolated.try_normalize()?;
+    Some(if unit.dot(geometric_normal) < 0.0 { -unit } else { unit })
+}
+
+/// Rounded operations between a mesh's vertices and a hit on one of its triangles, there and back: three
+/// products and two sums to interpolate, and some twenty to intersect the next ray with the same plane or a
+/// neighbour in it. Measured against the mesh's whole size, so that it also holds where a small triangle lies
+/// beside a large one.
+const ON_TRIANGLE: u32 = 32;

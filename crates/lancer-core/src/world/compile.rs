@@ -1,0 +1,311 @@
+//! From a scene to a world.
+
+use super::geometry::{Geometry, PreparedMesh};
+use super::{Object, ObjectId, World};
+use crate::accel::{Aabb, Accelerator, BuildError, KdSettings, KdTree, Primitives};
+use crate::color::Rgb;
+use crate::geometry::{Bounds, Placement, Transform};
+use crate::mesh::Mesh;
+use crate::scene::{Light, Material, MaterialId, NodeId, Scene, Shape, Texture};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// How a world is made ready.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CompileOptions {
+    /// Which structure finds hits.
+    pub accelerator: Accelerator,
+    /// The bounds of the k-d trees.
+    pub kd: KdSettings,
+}
+
+/// Why a scene cannot be traced. Nodes, materials and lights are told by name, or by number where they have none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompileError {
+    /// Nothing is drawn.
+    #[error("the scene draws nothing")]
+    NothingToDraw,
+    /// A node is its own descendant.
+    #[error("{node} contains itself")]
+    Cycle {
+        /// The node.
+        node: String,
+    },
+    /// An object's global transform has no inverse.
+    #[error("the transform of {node} is singular: it flattens the object or has entries that are not finite")]
+    Singular {
+        /// The node.
+        node: String,
+    },
+    /// A node names a node or a material that the scene does not have.
+    #[error("{node} refers to something that is not in the scene")]
+    Dangling {
+        /// The node.
+        node: String,
+    },
+    /// Subtrees used many times make too many objects.
+    #[error("the scene draws {count} objects, more than {}", World::MAX_OBJECTS)]
+    TooManyObjects {
+        /// How many, or more.
+        count: u64,
+    },
+    /// A coefficient of a material is out of its range.
+    #[error("{property} of {material} {requirement}")]
+    Material {
+        /// The material.
+        material: String,
+        /// Which coefficient.
+        property: &'static str,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// A light's position or intensity, the ambient light or the background is out of its range.
+    #[error("{what} must be finite and not negative")]
+    Light {
+        /// Which.
+        what: String,
+    },
+    /// A tree could not be built.
+    #[error(transparent)]
+    Tree(#[from] BuildError),
+}
+
+impl World {
+    /// The most objects that a world may hold.
+    pub const MAX_OBJECTS: u64 = 1 << 25;
+
+    /// Compiles a scene. Trees are built on the threads of the current rayon pool.
+    ///
+    /// Objects without a material, on themselves or above them, get the default one.
+    ///
+    /// # Errors
+    /// The first fault found; see [`CompileError`].
+    pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<Self, CompileError> {
+        check_numbers(scene)?;
+        let drawn = count_drawn(scene)?;
+        let total = scene.roots().iter().fold(0_u64, |sum, id| sum.saturating_add(drawn[id.index()]));
+        if total == 0 {
+            return Err(CompileError::NothingToDraw);
+        }
+        if total > Self::MAX_OBJECTS {
+            return Err(CompileError::TooManyObjects { count: total });
+        }
+        let mut materials = scene.materials().to_vec();
+        materials.push(Material::named("default"));
+        let mut flat = Flat::default();
+        flatten(scene, &drawn, &mut flat)?;
+        let kd = effective_settings(options);
+        let meshes = flat
+            .meshes
+            .into_par_iter()
+            .map(|mesh| Ok(PreparedMesh { tree: KdTree::build(mesh.as_ref(), kd)?, mesh }))
+            .collect::<Result<Vec<_>, BuildError>>()?;
+        let mut world = Self {
+            accelerator: options.accelerator,
+            objects: flat.objects,
+            meshes,
+            materials,
+            lights: scene.lights.clone(),
+            ambient: scene.ambient,
+            background: scene.background,
+            bounded: Vec::new(),
+            unbounded: Vec::new(),
+            tree: KdTree::build(&ObjectBoxes(Vec::new()), kd)?,
+            bounds: Bounds::EMPTY,
+        };
+        world.index_objects(kd)?;
+        Ok(world)
+    }
+
+    /// Sorts objects into bounded and unbounded ones and builds the tree over the former.
+    fn index_objects(&mut self, kd: KdSettings) -> Result<(), BuildError> {
+        let mut boxes = Vec::new();
+        for (index, object) in self.objects.iter().enumerate() {
+            let id = ObjectId(index as u32);
+            let bounds = object.placement.bounds_to_world(object.geometry.bounds(&self.meshes));
+            let aabb = Aabb::around(&bounds);
+            if bounds.is_finite() && aabb.min.iter().chain(&aabb.max).all(|x| x.is_finite()) {
+                self.bounds = self.bounds.union(bounds);
+                self.bounded.push(id);
+                boxes.push(aabb);
+            } else {
+                self.unbounded.push(id);
+            }
+        }
+        self.tree = KdTree::build(&ObjectBoxes(boxes), kd)?;
+        Ok(())
+    }
+}
+
+/// The user's bounds; brute force needs no trees, so they are left at their roots.
+fn effective_settings(options: &CompileOptions) -> KdSettings {
+    match options.accelerator {
+        Accelerator::KdTree => options.kd,
+        Accelerator::BruteForce => KdSettings { leaf: Some(u32::MAX), depth: Some(0) },
+    }
+}
+
+/// The boxes of the bounded objects, for a tree.
+struct ObjectBoxes(Vec<Aabb>);
+
+impl Primitives for ObjectBoxes {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        self.0[primitive as usize]
+    }
+}
+
+/// How many shapes each node draws, itself included. Finds cycles and dangling references on the way.
+///
+/// Trees may be any number of levels deep, so the walk keeps its own stack.
+fn count_drawn(scene: &Scene) -> Result<Vec<u64>, CompileError> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum State {
+        New,
+        Open,
+        Done,
+    }
+    let nodes = scene.nodes();
+    let mut state = vec![State::New; nodes.len()];
+    let mut drawn = vec![0_u64; nodes.len()];
+    let mut stack = scene.roots().to_vec();
+    while let Some(&id) = stack.last() {
+        let index = id.index();
+        let node = scene.node(id);
+        match state[index] {
+            State::New => {
+                state[index] = State::Open;
+                let dangling = node.children.iter().any(|child| child.index() >= nodes.len())
+                    || node.material.is_some_and(|material| material.index() >= scene.materials().len());
+                if dangling {
+                    return Err(CompileError::Dangling { node: name_of(scene, id) });
+                }
+                for &child in &node.children {
+                    match state[child.index()] {
+                        State::New => stack.push(child),
+                        State::Open => return Err(CompileError::Cycle { node: name_of(scene, child) }),
+                        State::Done => {}
+                    }
+                }
+            }
+            State::Open => {
+                state[index] = State::Done;
+                let own = u64::from(node.shape.is_some());
+                drawn[index] =
+                    node.children.iter().fold(own, |sum, child| sum.saturating_add(drawn[child.index()]));
+                stack.pop();
+            }
+            State::Done => {
+                stack.pop();
+            }
+        }
+    }
+    Ok(drawn)
+}
+
+#[derive(Default)]
+struct Flat {
+    objects: Vec<Object>,
+    meshes: Vec<Arc<Mesh>>,
+    mesh_indices: HashMap<*const Mesh, u32>,
+}
+
+impl Flat {
+    fn geometry(&mut self, shape: &Shape) -> Geometry {
+        match shape {
+            Shape::Sphere => Geometry::Sphere,
+            Shape::Cube => Geometry::Cube,
+            Shape::Cylinder { capped } => Geometry::Cylinder { capped: *capped },
+            Shape::Plane => Geometry::Plane,
+            Shape::Mesh(mesh) => {
+                Geometry::Mesh(*self.mesh_indices.entry(Arc::as_ptr(mesh)).or_insert_with(|| {
+                    self.meshes.push(Arc::clone(mesh));
+                    (self.meshes.len() - 1) as u32
+                }))
+            }
+        }
+    }
+}
+
+/// Walks the tree from its roots and writes out every shape that is drawn.
+fn flatten(scene: &Scene, drawn: &[u64], out: &mut Flat) -> Result<(), CompileError> {
+    let default_material = MaterialId::from_index(scene.materials().len());
+    let mut stack: Vec<(NodeId, Transform, MaterialId)> =
+        scene.roots().iter().rev().map(|&id| (id, Transform::IDENTITY, default_material)).collect();
+    while let Some((id, world_from_parent, inherited)) = stack.pop() {
+        if drawn[id.index()] == 0 {
+            continue;
+        }
+        let node = scene.node(id);
+        let world_from_node = node.transform.then(world_from_parent);
+        let material = node.material.unwrap_or(inherited);
+        if let Some(shape) = &node.shape {
+            let placement = Placement::new(world_from_node)
+                .map_err(|_| CompileError::Singular { node: name_of(scene, id) })?;
+            let geometry = out.geometry(shape);
+            out.objects.push(Object { placement, geometry, material, node: id });
+        }
+        stack.extend(node.children.iter().rev().map(|&child| (child, world_from_node, material)));
+    }
+    Ok(())
+}
+
+fn name_of(scene: &Scene, id: NodeId) -> String {
+    let name = &scene.node(id).name;
+    if name.is_empty() { format!("node {}", id.index()) } else { format!("`{name}`") }
+}
+
+/// Checks every number that an author gave, so that tracing need not.
+fn check_numbers(scene: &Scene) -> Result<(), CompileError> {
+    let light = |what: String, ok: bool| if ok { Ok(()) } else { Err(CompileError::Light { what }) };
+    light("the ambient light".into(), is_intensity(scene.ambient))?;
+    light("the background".into(), is_intensity(scene.background))?;
+    for (index, Light { name, position, intensity }) in scene.lights.iter().enumerate() {
+        let ok = position.is_finite() && is_intensity(*intensity);
+        let label = if name.is_empty() { format!("light {index}") } else { format!("light `{name}`") };
+        light(label, ok)?;
+    }
+    scene.materials().iter().enumerate().try_for_each(|(index, material)| check_material(index, material))
+}
+
+fn check_material(index: usize, material: &Material) -> Result<(), CompileError> {
+    let not_negative = "must be finite and not negative";
+    let colors = match &material.color {
+        Texture::Solid(color) => vec![*color],
+        Texture::Checker { even, odd, .. } => vec![*even, *odd],
+        Texture::Image(_) => Vec::new(),
+    };
+    let checker_size = match material.color {
+        Texture::Checker { size, .. } => size,
+        _ => 1.0,
+    };
+    let checks = [
+        ("color", not_negative, colors.into_iter().all(is_intensity)),
+        ("the checker's size", "must be finite and above 0", checker_size.is_finite() && checker_size > 0.0),
+        ("ambient", not_negative, is_intensity(material.ambient)),
+        ("diffuse", not_negative, is_intensity(material.diffuse)),
+        ("specular", not_negative, is_intensity(material.specular)),
+        ("metallic", not_negative, is_intensity(material.metallic)),
+        ("shininess", not_negative, is_intensity(material.shininess.into())),
+        ("reflect", not_negative, is_intensity(material.reflect)),
+        ("transmit", not_negative, is_intensity(material.transmit)),
+        ("ior", "must be finite and above 0", material.ior.is_finite() && material.ior > 0.0),
+    ];
+    match checks.into_iter().find(|(_, _, ok)| !ok) {
+        None => Ok(()),
+        Some((property, requirement, _)) => {
+            let name = &material.name;
+            let material =
+                if name.is_empty() { format!("material {index}") } else { format!("material `{name}`") };
+            Err(CompileError::Material { material, property, requirement })
+        }
+    }
+}
+
+fn is_intensity(color: Rgb) -> bool {
+    color.to_array().iter().all(|channel| channel.is_finite() && *channel >= 0.0)
+}

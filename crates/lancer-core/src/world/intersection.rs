@@ -1,0 +1,80 @@
+//! A hit with everything that shading wants to know of it.
+
+use super::{Hit, ObjectId, World};
+use crate::geometry::{DVec2, DVec3, Ray};
+use crate::scene::MaterialId;
+use crate::shape;
+
+/// Where a ray meets a surface, in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intersection {
+    /// The ray's parameter.
+    pub t: f64,
+    /// The point, as near to the surface as rounding allows.
+    pub point: DVec3,
+    /// How far from the surface it may lie, by axis; see [`crate::geometry::error::leave_surface`].
+    pub point_error: DVec3,
+    /// The outward unit normal of the surface.
+    pub geometric_normal: DVec3,
+    /// The outward unit normal for shading.
+    pub shading_normal: DVec3,
+    /// Texture coordinates.
+    pub uv: DVec2,
+    /// What was hit.
+    pub object: ObjectId,
+    /// Which face or triangle of it.
+    pub primitive: u32,
+    /// Its material.
+    pub material: MaterialId,
+    /// Whether the ray came from the inner side, against the outward normal.
+    pub from_inside: bool,
+}
+
+impl Intersection {
+    pub(super) fn new(world: &World, ray: &Ray, hit: &Hit) -> Self {
+        let object = world.object(hit.object);
+        let placement = &object.placement;
+        let ray_in_object = placement.ray_to_object(ray);
+        let local_hit = shape::Hit { t: hit.t, primitive: hit.primitive };
+        let surface = object.geometry.surface(&ray_in_object, &local_hit, &world.meshes);
+        Self {
+            t: hit.t,
+            point: placement.point_to_world(surface.point),
+            point_error: placement.error_in_world(surface.point, surface.point_error),
+            geometric_normal: placement.normal_to_world(surface.geometric_normal),
+            shading_normal: placement.normal_to_world(surface.shading_normal),
+            uv: surface.uv,
+            object: hit.object,
+            primitive: hit.primitive,
+            material: object.material,
+            // The inverse transpose keeps the sign of this product, so it is taken where it is most exact.
+            from_inside: surface.geometric_normal.dot(ray_in_object.direction) > 0.0,
+        }
+    }
+
+    /// The geometric normal on the side that the ray came from.
+    pub fn facing_geometric_normal(&self) -> DVec3 {
+        if self.from_inside { -self.geometric_normal } else { self.geometric_normal }
+    }
+
+    /// N of the illumination model: the shading normal on the side that the ray came from.
+    pub fn facing_normal(&self) -> DVec3 {
+        if self.from_inside { -self.shading_normal } else { self.shading_normal }
+    }
+
+    /// The ray that leaves this surface in `direction`, to whichever side that is.
+    pub fn spawn(&self, direction: DVec3) -> Ray {
+        crate::geometry::error::ray_from_surface(
+            self.point,
+            self.point_error,
+            self.geometric_normal,
+            direction,
+        )
+    }
+
+    /// The segment that leaves this surface and ends at `target`; t runs from 0 to 1.
+    pub fn segment_to(&self, target: DVec3) -> Ray {
+        let start = self.spawn(target - self.point).origin;
+        Ray::between(start, target)
+    }
+}

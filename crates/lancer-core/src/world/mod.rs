@@ -1,0 +1,282 @@
+//! The scene compiled for tracing: flat arrays, integer ids, accelerators; immutable.
+//!
+//! Its form, which code outside of this room may rely on:
+//!
+//! - `objects` holds one entry for each shape that is drawn, in the order of a depth-first walk of the scene's
+//!   tree, children in the author's order. An object's place in it is its [`ObjectId`].
+//! - An object has its global transform and its inverse, one geometry, one material, and the scene node that it
+//!   came from. Groups, names and inheritance are gone: what was inherited is written out.
+//! - `geometries` holds each mesh once, with its k-d tree, however many objects share it.
+//! - Bounded objects are found through a k-d tree over their boxes; unbounded ones (planes) stand in a list that
+//!   every ray goes through.
+//! - All transforms are invertible, all numbers finite, all coefficients and intensities not negative.
+//!
+//! Which of several hits at exactly the same t is reported does not depend on the accelerator: it is that of the
+//! lowest object, and there of the lowest primitive.
+
+mod compile;
+mod geometry;
+mod intersection;
+mod media;
+#[cfg(test)]
+mod tests;
+
+pub use compile::{CompileError, CompileOptions};
+pub use intersection::Intersection;
+pub use media::Media;
+
+use crate::accel::{Accelerator, KdTree};
+use crate::color::Rgb;
+use crate::geometry::{Bounds, Placement, Ray};
+use crate::scene::{Light, Material, MaterialId, NodeId};
+use geometry::{Geometry, PreparedMesh};
+
+/// Which object of a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ObjectId(u32);
+
+impl ObjectId {
+    /// Its place in [`World::objects`].
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A shape in its place.
+#[derive(Clone, Debug)]
+pub struct Object {
+    placement: Placement,
+    geometry: Geometry,
+    material: MaterialId,
+    node: NodeId,
+}
+
+impl Object {
+    /// Its global transform.
+    pub fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// Its material.
+    pub fn material(&self) -> MaterialId {
+        self.material
+    }
+
+    /// The scene's node that it came from.
+    pub fn node(&self) -> NodeId {
+        self.node
+    }
+}
+
+/// Where a ray meets the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The ray's parameter there.
+    pub t: f64,
+    /// What it meets.
+    pub object: ObjectId,
+    /// Which face or triangle of it.
+    pub primitive: u32,
+}
+
+/// A scene compiled for tracing.
+#[derive(Clone, Debug)]
+pub struct World {
+    accelerator: Accelerator,
+    objects: Vec<Object>,
+    meshes: Vec<PreparedMesh>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    ambient: Rgb,
+    background: Rgb,
+    /// The objects with finite boxes, in the order of the tree's primitives.
+    bounded: Vec<ObjectId>,
+    unbounded: Vec<ObjectId>,
+    tree: KdTree,
+    bounds: Bounds,
+}
+
+/// What a world holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WorldStatistics {
+    /// Shapes drawn.
+    pub objects: usize,
+    /// Meshes, each counted once.
+    pub meshes: usize,
+    /// Triangles, each mesh counted once.
+    pub triangles: u64,
+    /// Triangles that are drawn: each mesh as often as it is used.
+    pub instanced_triangles: u64,
+    /// Nodes of all k-d trees.
+    pub tree_nodes: u64,
+    /// Bytes of all k-d trees.
+    pub tree_bytes: u64,
+    /// Bytes of all meshes.
+    pub mesh_bytes: u64,
+    /// The depth of the deepest k-d tree.
+    pub tree_depth: u32,
+}
+
+impl World {
+    /// All objects, in the order of their ids.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// An object.
+    ///
+    /// # Panics
+    /// Where `id` is of another world and out of range here.
+    pub fn object(&self, id: ObjectId) -> &Object {
+        &self.objects[id.index()]
+    }
+
+    /// A material.
+    ///
+    /// # Panics
+    /// Where `id` is of another world and out of range here.
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.index()]
+    }
+
+    /// The lights, in the order in which they are summed.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// L_a: the ambient light.
+    pub fn ambient(&self) -> Rgb {
+        self.ambient
+    }
+
+    /// The radiance of a ray that meets nothing.
+    pub fn background(&self) -> Rgb {
+        self.background
+    }
+
+    /// The box around all bounded objects; empty where there is none.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The tree over the bounded objects.
+    pub fn object_tree(&self) -> &KdTree {
+        &self.tree
+    }
+
+    /// What it holds.
+    pub fn statistics(&self) -> WorldStatistics {
+        let trees = || self.meshes.iter().map(|mesh| &mesh.tree).chain([&self.tree]);
+        let triangles = |mesh: &PreparedMesh| mesh.mesh.triangle_count() as u64;
+        WorldStatistics {
+            objects: self.objects.len(),
+            meshes: self.meshes.len(),
+            triangles: self.meshes.iter().map(triangles).sum(),
+            instanced_triangles: self
+                .objects
+                .iter()
+                .filter_map(|object| object.geometry.mesh_index())
+                .map(|mesh| triangles(&self.meshes[mesh]))
+                .sum(),
+            tree_nodes: trees().map(|tree| tree.node_count() as u64).sum(),
+            tree_bytes: trees().map(|tree| tree.bytes() as u64).sum(),
+            mesh_bytes: self.meshes.iter().map(|mesh| mesh.mesh.bytes() as u64).sum(),
+            tree_depth: trees().map(KdTree::depth).max().unwrap_or(0),
+        }
+    }
+
+    /// The nearest hit with t in (0, `ray.t_max`); a hit exactly at an end may or may not be reported.
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        self.visit_objects(ray, |id, object| {
+            // A hit at the same t is looked at too: the lower object is to win.
+            let t_max = best.map_or(ray.t_max, |hit| hit.t.next_up());
+            let local_ray = Ray { t_max, ..object.placement.ray_to_object(ray) };
+            if let Some(local) = object.geometry.intersect(&local_ray, &self.meshes, self.accelerator) {
+                let hit = Hit { t: local.t, object: id, primitive: local.primitive };
+                let nearer = best.is_none_or(|best| (hit.t, hit.object) < (best.t, best.object));
+                if nearer {
+                    best = Some(hit);
+                }
+            }
+            best.map_or(ray.t_max, |hit| hit.t)
+        });
+        best
+    }
+
+    /// Whether the ray meets anything with t in (0, `ray.t_max`).
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        let mut found = false;
+        self.visit_objects(ray, |_, object| {
+            let local_ray = object.placement.ray_to_object(ray);
+            found = object.geometry.occluded(&local_ray, &self.meshes, self.accelerator);
+            if found { f64::NEG_INFINITY } else { ray.t_max }
+        });
+        found
+    }
+
+    /// Everything about a hit of `ray`.
+    ///
+    /// # Panics
+    /// Where `hit` is of another world and out of range here.
+    pub fn intersection(&self, ray: &Ray, hit: &Hit) -> Intersection {
+        Intersection::new(self, ray, hit)
+    }
+
+    /// Calls `visit` with the objects that the ray may meet, each once, roughly near before far. `visit` returns
+    /// the t up to which hits still count, or `f64::NEG_INFINITY` to end.
+    fn visit_objects(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
+        let everything = 0..self.objects.len() as u32;
+        if self.accelerator == Accelerator::BruteForce {
+            for id in everything.map(ObjectId) {
+                if visit(id, self.object(id)) == f64::NEG_INFINITY {
+                    return;
+                }
+            }
+            return;
+        }
+        let mut t_max = ray.t_max;
+        for &id in &self.unbounded {
+            t_max = visit(id, self.object(id));
+            if t_max == f64::NEG_INFINITY {
+                return;
+            }
+        }
+        let mut visited = Mailbox::default();
+        let ray = Ray { t_max, ..*ray };
+        self.tree.visit_leaves(&ray, |candidates| {
+            for &candidate in candidates {
+                if visited.first_time(candidate) {
+                    let id = self.bounded[candidate as usize];
+                    t_max = visit(id, self.object(id));
+                    if t_max == f64::NEG_INFINITY {
+                        break;
+                    }
+                }
+            }
+            t_max
+        });
+    }
+}
+
+/// Remembers which objects a ray was tested against, as well as a few words can: an object that spans several
+/// leaves may hold a whole mesh, and is worth testing only once. Forgetting one costs time and nothing else.
+struct Mailbox([u32; Self::SLOTS]);
+
+impl Mailbox {
+    /// Objects remembered. Untuned; as long as the objects around one ray seldom share a slot.
+    const SLOTS: usize = 8;
+
+    fn first_time(&mut self, object: u32) -> bool {
+        let slot = &mut self.0[object as usize % Self::SLOTS];
+        let first = *slot != object;
+        *slot = object;
+        first
+    }
+}
+
+impl Default for Mailbox {
+    fn default() -> Self {
+        Self([u32::MAX; Self::SLOTS])
+    }
+}
