@@ -24,3 +24,6 @@ pub mod shape;
 pub mod world;
 
 pub use color::Rgb;
+
+#[cfg(test)]
+mod testing;
