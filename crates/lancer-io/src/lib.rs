@@ -5,6 +5,7 @@
 pub mod diagnostics;
 pub mod limits;
 pub mod resolver;
+pub mod scene_file;
 
 use diagnostics::Diagnostic;
 use lancer_core::scene::Scene;

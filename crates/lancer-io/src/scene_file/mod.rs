@@ -1,0 +1,3 @@
+//! Scene files: YAML 1.2, and JSON as a part of it.
+
+mod syntax;
