@@ -9,15 +9,18 @@
 //!
 //! The JSON Schema is made from the same `model`. No other module knows YAML.
 
+mod apply;
 mod assets;
 mod build;
 mod deserialize;
+mod export;
 mod model;
 mod overrides;
 mod report;
 mod schema;
 mod syntax;
 
+pub use apply::apply_overrides;
 pub use assets::{Assets, Model};
 pub use overrides::{Override, OverrideError};
 pub use schema::json_schema;
@@ -77,6 +80,7 @@ fn tree(
         let empty = Problem::new(Place::start_of(Origin::File), "the file is empty");
         return Err(vec![empty.with_hint("a scene file begins with `format: 1`")]);
     };
+    problems.extend(overrides::apply(&mut root, overrides, limits));
     Ok((root, problems))
 }
 

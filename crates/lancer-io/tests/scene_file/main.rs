@@ -3,5 +3,6 @@
 mod common;
 mod hostile;
 mod models;
+mod overrides;
 mod schema;
 mod whole;
