@@ -26,9 +26,8 @@ pub use overrides::{Override, OverrideError};
 pub use schema::json_schema;
 
 use crate::Loaded;
-use crate::diagnostics::{Diagnostic, LoadError};
+use crate::diagnostics::LoadError;
 use crate::limits::Limits;
-use build::Warning;
 use model::{FORMAT, SceneFile};
 use report::Report;
 use std::path::Path;
@@ -66,7 +65,7 @@ pub fn read(
     if !built.problems.is_empty() {
         return Err(failed(built.problems));
     }
-    Ok(Loaded { scene: built.scene, warnings: told(built.warnings, &report) })
+    Ok(Loaded { scene: built.scene, warnings: report.warnings(built.warnings) })
 }
 
 /// The edited tree of a file, and the problems that left one.
@@ -90,12 +89,4 @@ fn missing_format(file: &SceneFile, root: &Node) -> Option<Problem> {
         Problem::new(root.place, "`format` is missing")
             .with_hint(format!("write `format: {FORMAT}` at the top of the file"))
     })
-}
-
-fn told(warnings: Vec<Warning>, report: &Report<'_>) -> Vec<Diagnostic> {
-    let diagnostic = |warning| match warning {
-        Warning::Here(problem) => report.diagnostic(&problem),
-        Warning::Elsewhere(diagnostic) => diagnostic,
-    };
-    warnings.into_iter().map(diagnostic).collect()
 }

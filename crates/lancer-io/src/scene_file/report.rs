@@ -1,5 +1,6 @@
 //! Problems at places, told as diagnostics of files.
 
+use super::build::Warning;
 use super::overrides::Override;
 use super::syntax::{Origin, Problem};
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -12,7 +13,7 @@ pub(crate) struct Report<'a> {
     /// `None` where there is no file, only overrides.
     text: Option<&'a str>,
     overrides: &'a [Override],
-    /// The most problems that are told, at least 1.
+    /// The most errors that are told, and the most warnings; at least 1.
     pub(crate) most: usize,
 }
 
@@ -40,15 +41,31 @@ impl<'a> Report<'a> {
         let more = told.len().saturating_sub(self.most);
         let mut diagnostics =
             told.iter().take(self.most).map(|problem| self.diagnostic(problem)).collect::<Vec<_>>();
-        if more > 0 || told.len() == self.most {
-            let count =
-                if more > 0 { format!("{more} more errors are") } else { "more errors may be".into() };
-            diagnostics.push(Diagnostic::new(self.file, format!("{count} not shown")));
+        if told.len() >= self.most {
+            // A reader stops when it has found enough, and cannot know how many more there are.
+            let rest = if more > 0 {
+                format!("{more} more errors are not shown")
+            } else {
+                "there may be more errors".into()
+            };
+            diagnostics.push(Diagnostic::new(self.file, rest));
         }
         LoadError { diagnostics }
     }
 
-    pub(crate) fn diagnostic(&self, problem: &Problem) -> Diagnostic {
+    /// The warnings in the order in which they came up.
+    pub(crate) fn warnings(&self, warnings: Vec<Warning>) -> Vec<Diagnostic> {
+        let more = warnings.len().saturating_sub(self.most);
+        let told = warnings.into_iter().take(self.most).map(|warning| match warning {
+            Warning::Here(problem) => self.diagnostic(&problem),
+            Warning::Elsewhere(diagnostic) => diagnostic,
+        });
+        let rest =
+            (more > 0).then(|| Diagnostic::new(self.file, format!("{more} more warnings are not shown")));
+        told.chain(rest).collect()
+    }
+
+    fn diagnostic(&self, problem: &Problem) -> Diagnostic {
         let mut diagnostic = match (problem.place.origin, self.text) {
             (Origin::File, Some(text)) => Diagnostic::new(self.file, &problem.message)
                 .at(problem.place.line as usize, problem.place.column as usize)

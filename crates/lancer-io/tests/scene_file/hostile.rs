@@ -151,7 +151,7 @@ fn no_more_errors_are_told_than_the_limit() {
     let wrong = "- {shape: no}\n".repeat(1000);
     let error = load_bytes(format!("format: 1\nobjects:\n{wrong}").as_bytes(), &[]).unwrap_err();
     assert_eq!(error.diagnostics.len(), 51);
-    assert_eq!(error.diagnostics[50].message, "more errors may be not shown");
+    assert_eq!(error.diagnostics[50].message, "there may be more errors");
 }
 
 #[test]
@@ -230,7 +230,11 @@ fn files_made_to_hurt_are_refused_in_no_time() {
     let many_errors =
         format!("format: 1\nlights:\n{}", "- {position: [0, 0, x], intensity: 1}\n".repeat(50_000));
     let many_repeats = format!("format: 1\n{}", "name: a\n".repeat(100_000));
+    let many_names = (0..20_000).map(|i| format!("  material{i}: {{}}\n")).collect::<String>();
+    let many_unknown =
+        (0..20_000).map(|i| format!("- {{shape: cube, material: metarial{i}}}\n")).collect::<String>();
     for (text, seconds) in [
+        (format!("format: 1\nmaterials:\n{many_names}objects:\n{many_unknown}"), 20),
         (format!("a0: &a0 1\n{bomb}"), 1),
         ("[".repeat(100_000), 1),
         ("{a: ".repeat(100_000), 1),
@@ -248,6 +252,27 @@ fn files_made_to_hurt_are_refused_in_no_time() {
         let most = Duration::from_secs(seconds);
         assert!(start.elapsed() < most, "{}... took {:?}", &text[..20], start.elapsed());
     }
+}
+
+#[test]
+fn warnings_are_bounded_too() {
+    let unused = (0..50_000).map(|i| format!("  m{i}: {{}}\n")).collect::<String>();
+    let text = format!("format: 1\nambient: 1\nobjects: [{{shape: cube}}]\nmaterials:\n{unused}");
+    let warnings = load_bytes(text.as_bytes(), &[]).unwrap().warnings;
+    assert_eq!(warnings.len(), 51);
+    assert_eq!(warnings[50].message, "49950 more warnings are not shown");
+}
+
+#[test]
+fn nesting_up_to_the_limit_is_read() {
+    // The file and `objects` are two levels, each object with children two, and the cube is one: 199.
+    let levels = 98;
+    let text = format!(
+        "format: 1\nambient: 1\nobjects: [{}{{shape: cube}}{}]\n",
+        "{children: [".repeat(levels),
+        "]}".repeat(levels)
+    );
+    assert!(load_bytes(text.as_bytes(), &[]).is_ok());
 }
 
 /// Pieces that reach far into the reader.

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{most_similar, name_hint};
 use crate::scene_file::deserialize::Spanned;
-use crate::scene_file::syntax::{Node, Place, Problem};
+use crate::scene_file::syntax::{self, Node, Place, Problem};
 use std::collections::{HashMap, HashSet};
 
 /// The things of one kind, and which of them are in use.
@@ -12,7 +12,12 @@ pub(super) struct Names<'a, T> {
     entries: Vec<Entry<'a, T>>,
     by_name: HashMap<&'a str, usize>,
     unread: Unread<'a>,
+    hints_left: usize,
 }
+
+/// How many unknown names of a kind get a hint: more than are ever told. Each is compared with all that are known,
+/// so that without a bound a hostile file would take time by the square of its length.
+const MOST_HINTS: usize = 100;
 
 struct Entry<'a, T> {
     name: &'a Spanned<String>,
@@ -29,7 +34,7 @@ enum Unread<'a> {
 impl<'a> Unread<'a> {
     /// What was taken out of a section of the document.
     fn of(root: &'a Node, section: &str) -> Self {
-        let lost = |entry: &&crate::scene_file::syntax::Entry| entry.value.removed.get();
+        let lost = |entry: &&syntax::Entry| entry.value.removed.get();
         // Lost as a whole, be it under a misspelt name.
         if root.entries().iter().filter(lost).any(|entry| most_similar(&entry.key, [section]).is_some()) {
             return Self::All;
@@ -49,7 +54,13 @@ impl<'a> Unread<'a> {
 impl<'a, T> Names<'a, T> {
     /// None yet; those of `section` in the document are to come.
     pub(super) fn new(kind: &'static str, root: &'a Node, section: &str) -> Self {
-        Self { kind, entries: Vec::new(), by_name: HashMap::new(), unread: Unread::of(root, section) }
+        Self {
+            kind,
+            entries: Vec::new(),
+            by_name: HashMap::new(),
+            unread: Unread::of(root, section),
+            hints_left: MOST_HINTS,
+        }
     }
 
     pub(super) fn add(&mut self, name: &'a Spanned<String>, thing: T) {
@@ -75,11 +86,19 @@ impl<'a, T> Names<'a, T> {
         if self.unread.has(name) {
             return Ok(None);
         }
+        Err(self.unknown(name, place))
+    }
+
+    fn unknown(&mut self, name: &str, place: Place) -> Problem {
         let problem = Problem::new(place, format!("unknown {} `{name}`", self.kind));
-        Err(match name_hint(name, self.entries.iter().map(|entry| entry.name.value.as_str())) {
+        if self.hints_left == 0 {
+            return problem;
+        }
+        self.hints_left -= 1;
+        match name_hint(name, self.entries.iter().map(|entry| entry.name.value.as_str())) {
             Some(hint) => problem.with_hint(hint),
             None => problem.with_hint(format!("the file has no {}s", self.kind)),
-        })
+        }
     }
 
     /// Warnings of the things that nothing uses.
