@@ -73,8 +73,8 @@ impl fmt::Display for Diagnostic {
         write!(f, ": {}", self.message)?;
         if let (Some(source), Some(Location { line, column })) = (&self.source_line, self.location) {
             let (shown, mark) = excerpt(source, column);
-            let gutter = line.to_string();
-            write!(f, "\n  {gutter} | {shown}\n  {:gutter$} | {:>mark$}", "", "^", gutter = gutter.len())?;
+            let gutter = line.to_string().len();
+            write!(f, "\n  {line} | {shown}\n  {:gutter$} | {:>mark$}", "", "^")?;
         }
         if let Some(hint) = &self.hint {
             write!(f, "\nhint: {hint}")?;
