@@ -3,5 +3,7 @@
 //! It knows neither traversal nor threads.
 
 pub mod diagnostics;
+pub mod image;
 pub mod limits;
+pub mod output;
 pub mod resolver;
