@@ -5,5 +5,6 @@
 pub mod diagnostics;
 pub mod image;
 pub mod limits;
+pub mod model;
 pub mod output;
 pub mod resolver;
