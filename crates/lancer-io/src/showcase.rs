@@ -32,11 +32,12 @@ struct Lamp {
 }
 
 /// Three lights as photographers set them. Key, fill and ambient light together give a plaster that faces the
-/// key light about 0.8, which leaves room for the near side and for the highlight.
+/// key light about 0.8, which leaves room for the near side and for the highlight. All stand high: one near
+/// the ground would burn a spot into it.
 const LAMPS: [Lamp; 3] = [
     Lamp { name: "key", from: DVec3::new(-0.7, 0.9, 0.8), radiance: 0.62 },
-    Lamp { name: "fill", from: DVec3::new(1.0, 0.3, 0.6), radiance: 0.18 },
-    Lamp { name: "rim", from: DVec3::new(0.4, 0.8, -1.0), radiance: 0.35 },
+    Lamp { name: "fill", from: DVec3::new(1.0, 0.6, 0.6), radiance: 0.18 },
+    Lamp { name: "rim", from: DVec3::new(0.5, 1.8, -0.9), radiance: 0.35 },
 ];
 
 /// L_a: fills what no light reaches, so that ambient occlusion shows, and does not flatten the rest.

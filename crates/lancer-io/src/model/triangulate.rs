@@ -7,8 +7,8 @@
 
 use lancer_core::geometry::{DVec2, DVec3};
 
-/// The most corners of a polygon that needs ears clipped, whose time grows with the square of this: here a
-/// tenth of a second. Polygons in which a fan will do have no bound.
+/// The most corners of a polygon that needs ears clipped, whose time grows with the square of this: here
+/// half a second. Polygons in which a fan will do have no bound.
 pub(super) const MAX_CLIPPED_CORNERS: usize = 1 << 14;
 
 /// A polygon that cannot be cut into triangles in reasonable time.
