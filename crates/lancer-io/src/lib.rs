@@ -1,20 +1,16 @@
 //! Bytes to scenes, and images to bytes.
 //!
-//! It knows neither traversal nor threads.
+//! It knows neither traversal nor threads. [`load`] reads whatever a user names; the modules read and write one
+//! kind of file each.
 
 pub mod diagnostics;
+pub mod image;
 pub mod limits;
+mod load;
+pub mod model;
+pub mod output;
 pub mod resolver;
 pub mod scene_file;
+pub mod showcase;
 
-use diagnostics::Diagnostic;
-use lancer_core::scene::Scene;
-
-/// A scene that could be read, and what its author should know about it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Loaded {
-    /// The scene.
-    pub scene: Scene,
-    /// What is odd about the files, but does not keep the scene from being drawn.
-    pub warnings: Vec<Diagnostic>,
-}
+pub use load::{LoadOptions, Loaded, SCENE_EXTENSIONS, load};
