@@ -1,1 +1,4 @@
 //! One scene a file.
+
+pub(crate) mod sky;
+pub(crate) mod whitted;
