@@ -1,4 +1,6 @@
 //! One scene a file.
 
-pub(crate) mod sky;
+mod bezier;
+mod sky;
+pub(crate) mod teapot;
 pub(crate) mod whitted;
