@@ -2,5 +2,6 @@
 
 mod bezier;
 mod sky;
+pub(crate) mod sphereflake;
 pub(crate) mod teapot;
 pub(crate) mod whitted;
