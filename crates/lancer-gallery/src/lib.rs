@@ -23,7 +23,8 @@ pub trait BuiltinScene: Sync {
 pub const DEFAULT: &str = "whitted";
 
 /// All built-in scenes, in the order in which they are listed.
-pub const SCENES: &[&dyn BuiltinScene] = &[];
+pub const SCENES: &[&dyn BuiltinScene] =
+    &[&scenes::whitted::Whitted, &scenes::teapot::Teapot, &scenes::sphereflake::Sphereflake];
 
 /// The scene of a name.
 pub fn find(name: &str) -> Option<&'static dyn BuiltinScene> {
