@@ -5,8 +5,7 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args as ClapArgs, Parser, Subcommand};
-use lancer_core::accel::Accelerator;
-use lancer_core::accel::KdTree;
+use lancer_core::accel::{Accelerator, KdTree};
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
 use lancer_io::scene_file::Override;
@@ -59,13 +58,14 @@ pub(crate) enum Command {
 pub(crate) struct RenderArgs {
     /// A built-in scene, a scene file (.yaml, .yml, .json) or a model
     ///
-    /// Without it, the first built-in scene. `lancer scenes` lists the built-in ones. A model is framed, lit and
+    /// Without it, the default built-in scene. `lancer scenes` lists the built-in ones. A model is framed, lit and
     /// given a default material.
     pub(crate) scene: Option<OsString>,
 
     /// Where the picture goes: a .png or .exr file, or `-` for a PNG on standard output
     ///
-    /// Without it, SCENE's name with .png, in the current directory. The file is written whole or not at all.
+    /// Without it, SCENE's name with .png, in the current directory, unless that would replace a file that lancer
+    /// did not make. The file is written whole or not at all.
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
 

@@ -1,6 +1,7 @@
 //! Where a picture goes.
 
 use crate::error::Error;
+use crate::interrupt;
 use crate::source::Source;
 use crate::terminal::{self, STDOUT};
 use lancer_core::film::Image;
@@ -9,7 +10,7 @@ use lancer_io::image::encode::{ImageFormat, Metadata, write, write_png};
 use lancer_io::output::write_atomically;
 use std::fmt;
 use std::fs;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Where a picture goes, and in which format.
@@ -23,6 +24,8 @@ pub(crate) enum Destination {
         path: PathBuf,
         /// Its format.
         format: ImageFormat,
+        /// Whether the user named it.
+        is_named: bool,
     },
 }
 
@@ -32,17 +35,16 @@ impl Destination {
     /// # Errors
     /// No format of that name is written.
     pub(crate) fn find(output: Option<&Path>, source: &Source) -> Result<Self, Error> {
-        let path = match output {
-            Some(path) if path == Path::new("-") => return Ok(Self::Stdout),
-            Some(path) => path.to_owned(),
-            None => {
-                let mut name = source.stem().to_owned();
-                name.push(".png");
-                name.into()
-            }
+        let Some(output) = output else {
+            let mut name = source.stem().to_owned();
+            name.push(".png");
+            return Ok(Self::File { path: name.into(), format: ImageFormat::Png, is_named: false });
         };
-        let format = ImageFormat::from_path(&path).map_err(|error| Error::usage(error.to_string()))?;
-        Ok(Self::File { path, format })
+        if output == Path::new("-") {
+            return Ok(Self::Stdout);
+        }
+        let format = ImageFormat::from_path(output).map_err(|error| Error::usage(error.to_string()))?;
+        Ok(Self::File { path: output.to_owned(), format, is_named: true })
     }
 
     /// Finds out before a long render what would make writing fail after it. It changes nothing.
@@ -56,8 +58,10 @@ impl Destination {
                 "redirect standard output, or give a file: --output picture.png",
             )),
             Self::Stdout => Ok(()),
-            Self::File { path, .. } => {
-                check_writable(path).map_err(|error| Error::output(path.display().to_string(), &error))
+            Self::File { path, is_named, .. } => {
+                let checked =
+                    check_writable(path).and_then(|()| if *is_named { Ok(()) } else { check_ours(path) });
+                checked.map_err(|error| Error::output(path.display().to_string(), &error))
             }
         }
     }
@@ -69,7 +73,7 @@ impl Destination {
     pub(crate) fn write(&self, image: &Image, cancel: &CancelToken) -> Result<(), Error> {
         let written = match self {
             Self::Stdout => write_to_stdout(image),
-            Self::File { path, format } => write_to_file(path, *format, image, cancel),
+            Self::File { path, format, .. } => write_to_file(path, *format, image, cancel),
         };
         // Whatever the error then says, it is not the file's fault.
         written.map_err(|error| if cancel.is_cancelled() { Error::Interrupted } else { error })
@@ -96,6 +100,9 @@ fn write_to_stdout(image: &Image) -> Result<(), Error> {
 }
 
 fn write_to_file(path: &Path, format: ImageFormat, image: &Image, cancel: &CancelToken) -> Result<(), Error> {
+    // A pipe, in which nothing can be unwound, may wait for its reader for ever.
+    let is_replaced = fs::metadata(path).map_or(true, |found| found.is_file());
+    let _handled = is_replaced.then(|| interrupt::only_cancels(cancel));
     let written = write_atomically(path, |out| {
         let mut out = UntilCancelled { out, cancel };
         write(format, image, &Metadata::default(), &mut out)?;
@@ -151,6 +158,22 @@ fn check_writable(path: &Path) -> io::Result<()> {
     tempfile::tempfile_in(directory).map(drop)
 }
 
+/// Whether a file that the user did not name may be replaced: it is not there, or is a picture by this program.
+///
+/// `model.obj` often has its texture beside it in `model.png`.
+fn check_ours(path: &Path) -> io::Result<()> {
+    /// More than the chunks of a PNG before its pixels, where it names its maker.
+    const HEAD: u64 = 1024;
+    const MAKER: &[u8] = b"Software\0Lancer ";
+    let Ok(file) = fs::File::open(path) else { return Ok(()) };
+    let mut head = Vec::new();
+    file.take(HEAD).read_to_end(&mut head)?;
+    if head.windows(MAKER.len()).any(|window| window == MAKER) {
+        return Ok(());
+    }
+    Err(io::Error::other("it was not made by lancer; to replace it, name it with --output"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,7 +183,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("old.png");
         fs::write(&path, "old").unwrap();
-        let destination = Destination::File { path: path.clone(), format: ImageFormat::Png };
+        let destination = Destination::File { path: path.clone(), format: ImageFormat::Png, is_named: true };
         let cancel = CancelToken::default();
         cancel.cancel();
 

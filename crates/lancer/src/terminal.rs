@@ -56,5 +56,10 @@ pub(crate) fn note(message: impl Display) {
 }
 
 fn tell(kind: &str, style: Style, message: impl Display) {
-    note(format_args!("{style}{kind}:{style:#} {message}"));
+    note(format_args!("{style}{kind}:{style:#} {}", harmless(&message.to_string())));
+}
+
+/// A text in which names out of a file may stand, without what would command a terminal.
+pub(crate) fn harmless(text: &str) -> String {
+    text.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
 }

@@ -26,7 +26,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Error> {
     let world = World::compile(&scene, &CompileOptions::default())
         .map_err(|error| LoadError::from(source.diagnostic(error)))?;
     let info = Info { source: &source, scene: &scene, world: &world, warnings: &warnings };
-    terminal::print(if args.json { info.json() } else { info.text() })
+    terminal::print(if args.json { info.json() } else { terminal::harmless(&info.text()) })
 }
 
 struct Info<'a> {

@@ -45,18 +45,8 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
     late.iter().for_each(terminal::tell_warning);
     warnings.extend(late);
-    let report = Report {
-        job,
-        shot: &shot,
-        world: world.statistics(),
-        rays: picture.rays,
-        stages,
-        warnings: &warnings,
-    };
-    if !job.quiet {
-        terminal::note(report.summary());
-    }
-    if job.json { terminal::print(report.json()) } else { Ok(()) }
+    let (world, rays) = (world.statistics(), picture.rays);
+    tell(&Report { job, shot: &shot, world, rays, stages, warnings: &warnings })
 }
 
 fn trace(
@@ -78,8 +68,14 @@ fn trace(
 }
 
 fn write(job: &Job, picture: &Render, cancel: &CancelToken, progress: &Progress) -> Result<(), Error> {
-    let _handled = interrupt::only_cancels(cancel);
     progress.during("writing", || job.destination.write(&job.tone.expose(&picture.image), cancel))
+}
+
+fn tell(report: &Report) -> Result<(), Error> {
+    if !report.job.quiet {
+        terminal::note(report.summary());
+    }
+    if report.job.json { terminal::print(report.json()) } else { Ok(()) }
 }
 
 /// Does `work` and notes how long it took.

@@ -69,6 +69,18 @@ fn a_second_ctrl_c_does_not_wait_for_the_pixel() {
 }
 
 #[test]
+fn waiting_for_a_reader_can_be_interrupted() {
+    let sandbox = Sandbox::new();
+    let size = "--width 500 --height 500";
+    // More than a pipe holds.
+    let child = start(&sandbox, &format!("render scene.yaml -o - --exposure 0.3 --samples 2 --ao 2 {size}"));
+    sleep(Duration::from_millis(1500));
+    send(&child, Signal::SIGINT);
+    let mut child = child;
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}
+
+#[test]
 fn a_render_started_by_nohup_outlives_its_terminal() {
     let sandbox = Sandbox::new();
     let render = format!("{} {LONG}", env!("CARGO_BIN_EXE_lancer"));

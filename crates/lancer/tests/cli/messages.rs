@@ -140,3 +140,13 @@ fn the_json_of_a_region_has_the_size_of_what_was_written() {
     assert_eq!(told["image"]["height"], 3);
     assert_eq!(told["rays"]["primary"], 15);
 }
+
+#[test]
+fn names_in_a_file_do_not_command_the_terminal() {
+    let sandbox = Sandbox::new();
+    sandbox.write("scene.yaml", SCENE.replace("Two balls", "\"\\e[2J\""));
+    assert!(!text(&sandbox.ok("info scene.yaml").stdout).contains('\x1b'));
+    sandbox.write("scene.yaml", SCENE.replace("material: floor", "material: \"\\e[2J\""));
+    let said = sandbox.fails(3, "check scene.yaml");
+    assert!(said.contains("[2J") && !said.contains('\x1b'), "{said:?}");
+}

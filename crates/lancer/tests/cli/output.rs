@@ -66,6 +66,17 @@ fn an_old_picture_is_replaced() {
     assert_eq!(sandbox.new_files(), ["picture.png"]);
 }
 
+#[test]
+fn only_pictures_by_lancer_are_replaced_unasked() {
+    let sandbox = Sandbox::new();
+    sandbox.write("scene.png", "a texture, say");
+    assert!(sandbox.fails(4, "render scene.yaml").contains("--output"));
+    assert_eq!(sandbox.read("scene.png"), b"a texture, say");
+    sandbox.ok("render scene.yaml --output scene.png");
+    sandbox.ok("render scene.yaml --width 9");
+    assert_eq!(read_png(&sandbox.path("scene.png")).width, 9);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_symbolic_link_goes_on_pointing_at_the_picture() {
