@@ -3,13 +3,13 @@
 //! The sites are points of a floor whose c_a is known in closed form, so that the error is one against the truth
 //! and not against another estimate.
 
+use crate::Failure;
 use crate::plot::{Curve, Labels, svg};
 use lancer_core::geometry::{DVec3, Ray, Transform};
 use lancer_core::integrator::{AmbientOcclusionSampler, RayCounts};
 use lancer_core::sampling::{Key, Stream};
 use lancer_core::scene::{AmbientOcclusion, Node, Scene, Shape};
 use lancer_core::world::{CompileOptions, Intersection, World};
-use std::error::Error;
 use std::f64::consts::FRAC_1_PI;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ struct Site {
 }
 
 #[expect(clippy::print_stdout, reason = "the table is what the command is for")]
-pub(crate) fn measure(output: &Path) -> Result<(), Box<dyn Error>> {
+pub(crate) fn measure(output: &Path) -> Result<(), Failure> {
     let sites = sites()?;
     let mut lattice =
         Curve { name: "turned spherical Fibonacci lattice", color: "#0b6e99", points: Vec::new() };
@@ -91,7 +91,7 @@ fn uniform_direction(stream: &mut Stream) -> DVec3 {
 }
 
 /// Beside a wall, beside a wall within reach, in a corner, and under a ball.
-fn sites() -> Result<Vec<Site>, Box<dyn Error>> {
+fn sites() -> Result<Vec<Site>, Failure> {
     let shift = |x: f64, y: f64, z: f64| Transform::translate(DVec3::new(x, y, z));
     let wall_x = Transform::rotate(DVec3::Z, 90.0).then(shift(0.3, 0.0, 0.0));
     let wall_z = Transform::rotate(DVec3::X, 90.0).then(shift(0.0, 0.0, 0.2));
@@ -109,7 +109,7 @@ fn sites() -> Result<Vec<Site>, Box<dyn Error>> {
     .collect()
 }
 
-fn site(shapes: Vec<(Shape, Transform)>, distance: f64, truth: f64) -> Result<Site, Box<dyn Error>> {
+fn site(shapes: Vec<(Shape, Transform)>, distance: f64, truth: f64) -> Result<Site, Failure> {
     let mut scene = Scene::new("site");
     scene.add(Node::shape("floor", Shape::Plane));
     for (shape, transform) in shapes {

@@ -38,7 +38,8 @@ impl Axis {
         let exponent = |x: f64| x.log2() / base.log2();
         let low = values.clone().map(exponent).fold(f64::INFINITY, f64::min);
         let high = values.map(exponent).fold(f64::NEG_INFINITY, f64::max);
-        let (first, last) = (low.floor() as i32, high.ceil() as i32);
+        // A value a little above a tick does not deserve a further decade.
+        let (first, last) = (low.floor() as i32, (high - 0.05).ceil() as i32);
         Self { base, first, last: last.max(first + 1), start, end }
     }
 
@@ -71,10 +72,10 @@ pub(crate) fn svg(curves: &[Curve], labels: &Labels) -> String {
     let middle = (TOP + HEIGHT - BOTTOM) / 2.0;
     text(22.0, middle, "middle", &format!("transform='rotate(-90 22 {middle})'"), labels.y);
     for value in x.ticks() {
-        text(x.place(value), HEIGHT - BOTTOM + 20.0, "middle", "", &format!("{value}"));
+        text(x.place(value), HEIGHT - BOTTOM + 20.0, "middle", "", &label(value));
     }
     for value in y.ticks() {
-        text(LEFT - 8.0, y.place(value) + 4.0, "end", "", &format!("{value}"));
+        text(LEFT - 8.0, y.place(value) + 4.0, "end", "", &label(value));
     }
     for (row, curve) in curves.iter().enumerate() {
         let y = TOP + 22.0 + 20.0 * row as f64;
@@ -97,6 +98,11 @@ pub(crate) fn svg(curves: &[Curve], labels: &Labels) -> String {
     }
     svg.push_str("</svg>\n");
     svg
+}
+
+/// A power of the base as people write it, without the rounding of its computation.
+fn label(value: f64) -> String {
+    format!("{}", (value * 1e6).round() / 1e6)
 }
 
 fn grid(svg: &mut String, from: (f64, f64), to: (f64, f64)) {
