@@ -103,8 +103,14 @@ fn bounds(bounds: &Bounds) -> String {
     if bounds.is_empty() {
         return "none: all objects are unbounded".into();
     }
-    let point = |p: DVec3| format!("({:.4}, {:.4}, {:.4})", p.x, p.y, p.z);
+    let point = |p: DVec3| format!("({})", p.to_array().map(short).join(", "));
     format!("{} to {}", point(bounds.min), point(bounds.max))
+}
+
+/// A number with five digits, as few as tell models of any size apart from their rounding errors.
+fn short(number: f64) -> String {
+    let rounded = format!("{number:.4e}").parse::<f64>();
+    rounded.expect("a number that was written can be read").to_string()
 }
 
 /// A count and the names, where there are any.
@@ -126,7 +132,7 @@ fn picture(settings: &Settings) -> String {
     let Settings { width, height, samples, depth, ao } = settings;
     let occlusion = match ao.samples {
         0 => "off".into(),
-        samples => format!("{samples} to {}", ao.distance),
+        samples => format!("{samples} to {}", short(ao.distance)),
     };
     format!("{width} x {height}, samples {samples}, depth {depth}, ambient occlusion {occlusion}")
 }
@@ -220,5 +226,25 @@ impl From<Settings> for PictureJson {
         let Settings { width, height, samples, depth, ao } = settings;
         let ao = OcclusionJson { samples: ao.samples, distance: ao.distance };
         Self { width, height, samples, depth, ao }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_at_every_size() {
+        let shown = [0.0, 1.0 / 3.0, -1.000_000_000_2, 123_456_789.0, 1.5e-7].map(short);
+        assert_eq!(shown, ["0", "0.33333", "-1", "123460000", "0.00000015"]);
+        assert_eq!(short(f64::INFINITY), "inf");
+    }
+
+    #[test]
+    fn long_lists_of_names_are_cut() {
+        assert_eq!(listed(["", ""].into_iter()), "2");
+        assert_eq!(listed(["", "sun"].into_iter()), "2: sun");
+        let many = listed(std::iter::repeat_n("a", 100));
+        assert!(many.starts_with("100: a, a") && many.ends_with("a, ..."), "{many}");
     }
 }
