@@ -162,3 +162,42 @@ fn one_pixel_makes_an_image_and_absurd_sizes_are_refused_before_anything_is_allo
         assert!(matches!(of(width, height), Err(RenderError::Settings(_))), "{width} x {height}");
     }
 }
+
+/// Promise: no light leaks, whether the room is one shape or six slabs that touch.
+#[test]
+fn no_light_enters_a_closed_room() {
+    let slab = |axis: usize, sign: f64| {
+        let mut scale = DVec3::splat(2.0);
+        scale[axis] = 0.5;
+        let mut place = DVec3::ZERO;
+        place[axis] = sign * 1.5;
+        Transform::scale(scale).then(Transform::translate(place))
+    };
+    let slabs = (0..3).flat_map(|axis| [slab(axis, 1.0), slab(axis, -1.0)]).collect::<Vec<_>>();
+    for (size, distance) in [(1.0, 0.0), (1e-3, 1e4), (1e3, 1e4)] {
+        for walls in [vec![Transform::IDENTITY], slabs.clone()] {
+            let place = Transform::rotate(DVec3::new(1.0, 2.0, 3.0), 40.0)
+                .then(Transform::scale(DVec3::splat(size)))
+                .then(Transform::translate(DVec3::new(0.6, 0.0, 0.8) * distance));
+            let mut scene = Scene::new("room");
+            scene.background = Rgb::grey(1e9);
+            for wall in walls {
+                scene.add(Node::shape("wall", Shape::Cube).with_transform(wall.then(place)));
+            }
+            for direction in [DVec3::X, DVec3::NEG_Y, DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 2.0, 0.1)] {
+                scene.add_light(place.point(direction * 9.0), Rgb::grey(1e12));
+            }
+            scene.camera = Camera {
+                eye: place.point(DVec3::new(0.3, 0.2, 0.9)),
+                target: place.point(DVec3::new(-0.2, -0.3, -1.0)),
+                up: DVec3::Y,
+                fov: 120.0,
+            };
+            let world = World::compile(&scene, &CompileOptions::default()).unwrap();
+            let settings = Settings { width: 200, height: 200, depth: 0, ..Settings::default() };
+            let image = render(&world, &scene.camera, &settings, None, &Control::default()).unwrap().image;
+            let lit = image.pixels().iter().filter(|pixel| **pixel != [0.0; 3]).count();
+            assert_eq!(lit, 0, "size {size}, distance {distance}, {} walls", scene.roots().len());
+        }
+    }
+}
