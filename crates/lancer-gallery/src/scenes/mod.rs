@@ -1,1 +1,3 @@
 //! One scene a file.
+
+pub(crate) mod ten_thousand;
