@@ -23,7 +23,8 @@ pub trait BuiltinScene: Sync {
 pub const DEFAULT: &str = "whitted";
 
 /// All built-in scenes, in the order in which they are listed.
-pub const SCENES: &[&dyn BuiltinScene] = &[&scenes::ten_thousand::TenThousand];
+pub const SCENES: &[&dyn BuiltinScene] =
+    &[&scenes::ten_thousand::TenThousand, &scenes::mirror_room::MirrorRoom];
 
 /// The scene of a name.
 pub fn find(name: &str) -> Option<&'static dyn BuiltinScene> {

@@ -1,3 +1,4 @@
 //! One scene a file.
 
+pub(crate) mod mirror_room;
 pub(crate) mod ten_thousand;
