@@ -23,8 +23,13 @@ pub trait BuiltinScene: Sync {
 pub const DEFAULT: &str = "whitted";
 
 /// All built-in scenes, in the order in which they are listed.
-pub const SCENES: &[&dyn BuiltinScene] =
-    &[&scenes::whitted::Whitted, &scenes::teapot::Teapot, &scenes::sphereflake::Sphereflake];
+pub const SCENES: &[&dyn BuiltinScene] = &[
+    &scenes::whitted::Whitted,
+    &scenes::teapot::Teapot,
+    &scenes::sphereflake::Sphereflake,
+    &scenes::mirror_room::MirrorRoom,
+    &scenes::ten_thousand::TenThousand,
+];
 
 /// The scene of a name.
 pub fn find(name: &str) -> Option<&'static dyn BuiltinScene> {
