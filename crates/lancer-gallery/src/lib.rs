@@ -3,7 +3,8 @@
 //! Each is a file in `scenes/` that implements [`BuiltinScene`], and a line in [`SCENES`]. To add your own, write
 //! such a file and such a line; `docs/add-a-scene.md` shows how.
 
-mod scenes;
+mod parts;
+pub mod scenes;
 
 use lancer_core::scene::Scene;
 
@@ -23,7 +24,15 @@ pub trait BuiltinScene: Sync {
 pub const DEFAULT: &str = "whitted";
 
 /// All built-in scenes, in the order in which they are listed.
-pub const SCENES: &[&dyn BuiltinScene] = &[];
+pub const SCENES: &[&dyn BuiltinScene] = &[
+    &scenes::primitives::Primitives,
+    &scenes::highlights::Highlights,
+    &scenes::shadows::Shadows,
+    &scenes::mirrors::Mirrors,
+    &scenes::glass::Glass,
+    &scenes::occlusion::Occlusion,
+    &scenes::supersampling::Supersampling,
+];
 
 /// The scene of a name.
 pub fn find(name: &str) -> Option<&'static dyn BuiltinScene> {
