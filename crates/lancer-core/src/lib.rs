@@ -8,6 +8,26 @@
 //! 2. [`world`]: the tree compiled for tracing: flat, immutable, with a k-d tree over each mesh and one over
 //!    the objects.
 //! 3. [`render`]: tiles of pixels traced by [`integrator`] and lit by [`shade`], into a [`film`].
+//!
+//! ```
+//! use lancer_core::Rgb;
+//! use lancer_core::geometry::DVec3;
+//! use lancer_core::render::{Control, render};
+//! use lancer_core::scene::{Node, Scene, Settings, Shape};
+//! use lancer_core::world::{CompileOptions, World};
+//!
+//! let mut scene = Scene::new("a ball in the sun");
+//! scene.background = Rgb::from_srgb_hex(0x87ceeb);
+//! scene.add_light(DVec3::new(4.0, 6.0, 4.0), Rgb::grey(200.0));
+//! scene.add(Node::shape("ball", Shape::Sphere));
+//! scene.settings = Settings { width: 80, height: 60, ..Settings::default() };
+//!
+//! let world = World::compile(&scene, &CompileOptions::default())?;
+//! let picture = render(&world, &scene.camera, &scene.settings, None, &Control::default())?;
+//! assert!(picture.image.pixel(40, 30)[0] > 0.1);
+//! assert_eq!(picture.rays.primary, 80 * 60);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod accel;
 pub mod camera;
@@ -24,3 +44,6 @@ pub mod shape;
 pub mod world;
 
 pub use color::Rgb;
+
+#[cfg(test)]
+mod testing;

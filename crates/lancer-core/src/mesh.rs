@@ -120,12 +120,22 @@ impl Mesh {
         self.bounds
     }
 
-    /// The three corners of a triangle, exact.
+    /// The three corners of a triangle.
+    ///
+    /// # Panics
+    /// Where `triangle` is out of range.
+    pub fn vertices(&self, triangle: u32) -> [[f32; 3]; 3] {
+        let [a, b, c] = self.data.indices[triangle as usize];
+        let position = |index: u32| self.data.positions[index as usize];
+        [position(a), position(b), position(c)]
+    }
+
+    /// The three corners of a triangle, in `f64`.
     ///
     /// # Panics
     /// Where `triangle` is out of range.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.data.indices[triangle as usize].map(|index| to_dvec3(self.data.positions[index as usize]))
+        self.vertices(triangle).map(to_dvec3)
     }
 
     /// The vertex normals of a triangle, if the mesh has them.

@@ -4,7 +4,7 @@
 //! such a file and such a line; `docs/add-a-scene.md` shows how.
 
 mod parts;
-pub mod scenes;
+mod scenes;
 
 use lancer_core::scene::Scene;
 
@@ -25,6 +25,9 @@ pub const DEFAULT: &str = "whitted";
 
 /// All built-in scenes, in the order in which they are listed.
 pub const SCENES: &[&dyn BuiltinScene] = &[
+    &scenes::whitted::Whitted,
+    &scenes::teapot::Teapot,
+    &scenes::sphereflake::Sphereflake,
     &scenes::primitives::Primitives,
     &scenes::highlights::Highlights,
     &scenes::shadows::Shadows,

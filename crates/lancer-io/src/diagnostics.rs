@@ -43,12 +43,13 @@ impl Diagnostic {
         self
     }
 
-    /// The diagnostic with the line of `text` that it speaks of.
+    /// The diagnostic with the line of `text` that it speaks of, unless that line is absurdly long.
     #[must_use]
     pub fn showing(mut self, text: &str) -> Self {
         self.source_line = self
             .location
             .and_then(|location| text.lines().nth(location.line.checked_sub(1)?))
+            .filter(|line| line.len() <= LONGEST_LINE_KEPT)
             .map(str::to_owned);
         self
     }
@@ -60,6 +61,10 @@ impl Diagnostic {
         self
     }
 }
+
+/// Longest line that a diagnostic keeps, in bytes: enough for a scene that a program wrote on one line, and small
+/// enough that a list of errors in a hostile one takes no memory to speak of.
+const LONGEST_LINE_KEPT: usize = 1 << 20;
 
 /// Longest part of a source line that is shown, in characters: a terminal's width or so.
 const SHOWN_CHARACTERS: usize = 100;
@@ -73,8 +78,8 @@ impl fmt::Display for Diagnostic {
         write!(f, ": {}", self.message)?;
         if let (Some(source), Some(Location { line, column })) = (&self.source_line, self.location) {
             let (shown, mark) = excerpt(source, column);
-            let gutter = line.to_string();
-            write!(f, "\n  {gutter} | {shown}\n  {:gutter$} | {:>mark$}", "", "^", gutter = gutter.len())?;
+            let gutter = line.to_string().len();
+            write!(f, "\n  {line} | {shown}\n  {:gutter$} | {:>mark$}", "", "^")?;
         }
         if let Some(hint) = &self.hint {
             write!(f, "\nhint: {hint}")?;
@@ -95,6 +100,56 @@ fn excerpt(line: &str, column: usize) -> (String, usize) {
         .collect::<String>();
     (shown.trim_end().to_owned(), (column - start).max(1))
 }
+
+/// A hint for a name that is none of those known: the one that it is a misspelling of, or else what there is.
+///
+/// ```
+/// use lancer_io::diagnostics::name_hint;
+/// assert_eq!(name_hint("sphrere", ["cube", "sphere"]).unwrap(), "did you mean `sphere`?");
+/// assert_eq!(name_hint("torus", ["cube", "sphere"]).unwrap(), "there are `cube`, `sphere`");
+/// ```
+pub fn name_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Option<String> {
+    if let Some(meant) = most_similar(name, known.clone()) {
+        return Some(format!("did you mean `{meant}`?"));
+    }
+    let mut known = known.into_iter();
+    let mut listed = known.by_ref().take(NAMES_LISTED).map(|name| format!("`{name}`")).collect::<Vec<_>>();
+    if known.next().is_some() {
+        listed.push("...".into());
+    }
+    match listed.as_slice() {
+        [] => None,
+        [one] => Some(format!("there is only {one}")),
+        _ => Some(format!("there are {}", listed.join(", "))),
+    }
+}
+
+/// The known name that `name` may be a misspelling of.
+pub fn most_similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = name.to_lowercase();
+    let length = name.chars().count();
+    if length > LONGEST_NAME_COMPARED {
+        return None;
+    }
+    let most_edits = (length / LETTERS_PER_EDIT).max(1);
+    known
+        .into_iter()
+        .filter(|known| known.len() <= 2 * LONGEST_NAME_COMPARED)
+        .map(|known| (strsim::damerau_levenshtein(&name, &known.to_lowercase()), known))
+        .filter(|&(edits, known)| edits <= most_edits && edits < known.chars().count())
+        .min_by_key(|&(edits, _)| edits)
+        .map(|(_, known)| known)
+}
+
+/// Names that a hint lists: a terminal's line or two.
+const NAMES_LISTED: usize = 12;
+
+/// Longest name that is compared with others, in characters: the comparison's time grows with its square.
+const LONGEST_NAME_COMPARED: usize = 64;
+
+/// One slip is forgiven for this many letters of a name. With fewer, hints turn into guesses; with more, a
+/// swapped or missing letter in a short name goes without one. Untuned.
+const LETTERS_PER_EDIT: usize = 3;
 
 /// Why a file could not be loaded: all of its errors, in the order of their places. Never empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -146,6 +201,18 @@ mod tests {
             shown,
             "scene.yaml:2:9: radius is -1, must be positive\n  2 | radius: -1\n    |         ^\nhint: use 1"
         );
+    }
+
+    #[test]
+    fn misspellings_are_recognised_and_other_names_are_not() {
+        let known = ["color", "shininess", "ior"];
+        assert_eq!(most_similar("colour", known), Some("color"));
+        assert_eq!(most_similar("Shinyness", known), Some("shininess"));
+        assert_eq!(most_similar("iro", known), Some("ior"));
+        assert_eq!(most_similar("roughness", known), None);
+        assert_eq!(most_similar("x", ["y"]), None, "a name of one letter is nothing but itself");
+        assert_eq!(name_hint("x", []), None);
+        assert_eq!(name_hint("x", ["lamp"]).unwrap(), "there is only `lamp`");
     }
 
     #[test]

@@ -40,6 +40,16 @@ impl Aabb {
         (0..3).all(|axis| common.min[axis] <= common.max[axis]).then_some(common)
     }
 
+    /// The box with its corners moved into `cell`, if they are not in it.
+    #[must_use]
+    pub fn clamped(&self, cell: &Self) -> Self {
+        let clamp = |x: f32, axis: usize| x.clamp(cell.min[axis], cell.max[axis]);
+        Self {
+            min: std::array::from_fn(|axis| clamp(self.min[axis], axis)),
+            max: std::array::from_fn(|axis| clamp(self.max[axis], axis)),
+        }
+    }
+
     /// The parts below and above the plane `position` of an axis.
     #[must_use]
     pub fn split(&self, axis: usize, position: f32) -> [Self; 2] {

@@ -14,6 +14,9 @@ pub mod plane;
 pub mod sphere;
 pub mod triangle;
 
+#[cfg(test)]
+mod tests;
+
 use crate::geometry::{DVec2, DVec3};
 
 /// Where a ray meets a shape.

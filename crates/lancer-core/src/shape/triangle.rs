@@ -17,11 +17,12 @@ use crate::mesh::Mesh;
 /// A ray made ready for the triangles of one mesh: the axes permuted and sheared so that it runs along +z.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearedRay {
-    origin: DVec3,
-    /// The axis that the ray follows most, and the two others in an order that keeps triangles' winding.
+    /// The origin, its axes permuted.
+    origin: [f64; 3],
+    /// The two axes that the ray follows less, in an order that keeps triangles' winding, then the other.
     axes: [usize; 3],
     /// Shear of x, shear of y, scale of z.
-    shear: DVec3,
+    shear: [f64; 3],
 }
 
 /// Where a ray meets a triangle's plane inside of its edges.
@@ -48,19 +49,20 @@ impl ShearedRay {
         if ray.direction[z] < 0.0 {
             std::mem::swap(&mut x, &mut y);
         }
-        let d = ray.direction;
-        Self { origin: ray.origin, axes: [x, y, z], shear: DVec3::new(d[x] / d[z], d[y] / d[z], 1.0 / d[z]) }
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        Self { origin: [o[x], o[y], o[z]], axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
     /// The hit with the triangle at any t, behind the origin too.
     ///
     /// A triangle seen exactly edge-on is not hit; in a closed mesh its neighbours are.
-    #[inline]
-    pub fn intersect(&self, corners: [DVec3; 3]) -> Option<TriangleHit> {
-        let [a, b, c] = corners.map(|corner| self.sheared(corner));
-        let u = c.x * b.y - c.y * b.x;
-        let v = a.x * c.y - a.y * c.x;
-        let w = b.x * a.y - b.y * a.x;
+    #[inline(always)]
+    pub fn intersect(&self, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
+        let [a, b, c] = corners;
+        let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (self.sheared(a), self.sheared(b), self.sheared(c));
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
@@ -68,15 +70,19 @@ impl ShearedRay {
         if determinant == 0.0 {
             return None;
         }
-        let t = self.shear.z * (u * a.z + v * b.z + w * c.z) / determinant;
+        let t = self.shear[2] * (u * az + v * bz + w * cz) / determinant;
         Some(TriangleHit { t, barycentric: [u / determinant, v / determinant, w / determinant] })
     }
 
-    #[inline]
-    fn sheared(&self, point: DVec3) -> DVec3 {
+    #[inline(always)]
+    fn sheared(&self, point: &[f32; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes;
-        let p = point - self.origin;
-        DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], p[z])
+        let along = f64::from(point[z]) - self.origin[2];
+        [
+            f64::from(point[x]) - self.origin[0] - self.shear[0] * along,
+            f64::from(point[y]) - self.origin[1] - self.shear[1] * along,
+            along,
+        ]
     }
 }
 
@@ -85,9 +91,9 @@ impl ShearedRay {
 /// The shading normal is the interpolated vertex normal, turned to the geometric one's side; the texture
 /// coordinates are interpolated, or are the barycentric ones of the last two corners where the mesh has none.
 pub fn surface(ray: &Ray, mesh: &Mesh, primitive: u32) -> SurfacePoint {
-    let corners = mesh.corners(primitive);
-    let [u, v, w] = ShearedRay::new(ray).intersect(corners).map_or([1.0, 0.0, 0.0], |hit| hit.barycentric);
-    let [a, b, c] = corners;
+    let hit = ShearedRay::new(ray).intersect(&mesh.vertices(primitive));
+    let [u, v, w] = hit.map_or([1.0, 0.0, 0.0], |hit| hit.barycentric);
+    let [a, b, c] = mesh.corners(primitive);
     let across = (b - a).cross(c - a);
     let geometric_normal = if across == DVec3::ZERO { -ray.direction } else { across };
     SurfacePoint {

@@ -1,6 +1,7 @@
 //! What an object is made of, in its canonical space.
 
 use crate::accel::{Aabb, Accelerator, KdTree, Primitives};
+use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec3, Ray};
 use crate::mesh::Mesh;
 use crate::shape::triangle::ShearedRay;
@@ -84,7 +85,7 @@ impl PreparedMesh {
         let sheared = ShearedRay::new(ray);
         let mut best = Hit { t: ray.t_max, primitive: u32::MAX };
         let mut test = |primitive: u32| {
-            if let Some(hit) = sheared.intersect(self.mesh.corners(primitive)) {
+            if let Some(hit) = sheared.intersect(&self.mesh.vertices(primitive)) {
                 let nearer = hit.t < best.t || (hit.t == best.t && primitive < best.primitive);
                 if nearer && hit.t > 0.0 && hit.t < ray.t_max {
                     best = Hit { t: hit.t, primitive };
@@ -106,7 +107,7 @@ impl PreparedMesh {
     fn occluded(&self, ray: &Ray, accelerator: Accelerator) -> bool {
         let sheared = ShearedRay::new(ray);
         let hits = |primitive: u32| {
-            let hit = sheared.intersect(self.mesh.corners(primitive));
+            let hit = sheared.intersect(&self.mesh.vertices(primitive));
             hit.is_some_and(|hit| hit.t > 0.0 && hit.t < ray.t_max)
         };
         match accelerator {
@@ -138,16 +139,19 @@ impl Primitives for Mesh {
     fn clip(&self, primitive: u32, cell: &Aabb) -> Option<Aabb> {
         let mut polygon = Polygon::new(self.corners(primitive));
         let bounds = cell.to_bounds();
+        // Widened by more than the rounding of a cut, so that a triangle that only touches a cell is not lost.
+        let slack = bounds.magnitude() * gamma(CUT_OPERATIONS);
         for axis in 0..3 {
-            polygon.keep(axis, |x| x - bounds.min[axis]);
-            polygon.keep(axis, |x| bounds.max[axis] - x);
+            polygon.keep(axis, |x| x - (bounds.min[axis] - slack[axis]));
+            polygon.keep(axis, |x| (bounds.max[axis] + slack[axis]) - x);
         }
         let clipped = Bounds::of_points(polygon.corners.iter().copied());
-        // Rounding may put a corner a little outside of the cell, but not out of reach of the traversal, which
-        // widens every plane by more.
-        if clipped.is_empty() { None } else { Aabb::around(&clipped).intersection(cell) }
+        (!clipped.is_empty()).then(|| Aabb::around(&clipped).clamped(cell))
     }
 }
+
+/// Rounded operations in six cuts of an edge, one after another; more only keeps a few more references.
+const CUT_OPERATIONS: u32 = 32;
 
 /// A triangle under the knife. Each of six cuts adds a corner at most.
 struct Polygon {

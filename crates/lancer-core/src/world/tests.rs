@@ -1,1 +1,339 @@
+//! Compilation, and the promises of what comes out of it.
 
+use super::*;
+use crate::accel::KdSettings;
+use crate::geometry::{DVec3, Transform};
+use crate::mesh::{Mesh, MeshData};
+use crate::scene::{Node, Scene, Shape, Texture};
+use crate::testing::{Random, ball, soup};
+use std::sync::Arc;
+
+fn compile(scene: &Scene) -> World {
+    World::compile(scene, &CompileOptions::default()).unwrap()
+}
+
+fn compile_error(scene: &Scene) -> CompileError {
+    World::compile(scene, &CompileOptions::default()).unwrap_err()
+}
+
+fn by_brute_force(scene: &Scene) -> World {
+    World::compile(scene, &CompileOptions { accelerator: Accelerator::BruteForce, kd: KdSettings::default() })
+        .unwrap()
+}
+
+fn mesh_scene(data: MeshData, transform: Transform) -> Scene {
+    let mut scene = Scene::new("mesh");
+    scene.add(Node::mesh("mesh", Mesh::new(data).unwrap()).with_transform(transform));
+    scene
+}
+
+/// All kinds of shapes under all kinds of transforms.
+fn crowd(seed: u32) -> Scene {
+    let mut random = Random::new(seed);
+    let mut scene = Scene::new("crowd");
+    let shared = Arc::new(soup(seed, 60));
+    scene.add(Node::shape("floor", Shape::Plane));
+    for _ in 0..60 {
+        let shape = match random.below(5) {
+            0 => Shape::Sphere,
+            1 => Shape::Cube,
+            2 => Shape::Cylinder { capped: true },
+            3 => Shape::Cylinder { capped: false },
+            _ => Shape::Mesh(Arc::clone(&shared)),
+        };
+        let distance = random.between(0.0, 2.0);
+        let transform = random.transform(0.2, distance);
+        scene.add(Node::shape("one", shape).with_transform(transform));
+    }
+    // Twins: which of two hits at the same t is seen must not depend on the accelerator.
+    let twin = scene.nodes()[1].clone();
+    scene.add(twin);
+    scene
+}
+
+#[test]
+fn trees_and_brute_force_report_the_same_hit() {
+    for seed in 0..10 {
+        let scene = crowd(seed);
+        let (world, oracle) = (compile(&scene), by_brute_force(&scene));
+        let mut random = Random::new(50 + seed);
+        for _ in 0..3000 {
+            let mut ray = random.ray(3.0);
+            if random.below(2) == 0 {
+                ray.t_max = random.between(0.0, 2.0);
+            }
+            let expected = oracle.intersect(&ray);
+            assert_eq!(world.intersect(&ray), expected, "{ray:?}");
+            assert_eq!(world.occluded(&ray), expected.is_some(), "{ray:?}");
+        }
+    }
+}
+
+/// Promise 2: 0 misses, at the origin and far away.
+#[test]
+fn no_ray_escapes_from_a_closed_mesh() {
+    for (size, distance) in [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 1e4), (1e-3, 1e4), (1e3, 1e4)] {
+        let data = ball(24, 48);
+        let mesh = Mesh::new(data.clone()).unwrap();
+        let mut random = Random::new(3);
+        let transform = random.transform(size, distance);
+        let world = compile(&mesh_scene(data.clone(), transform));
+        let mut from_inside = |to: DVec3| {
+            let origin = transform.point(random.point(0.3));
+            let ray = Ray::new(origin, transform.point(to) - origin);
+            assert!(world.occluded(&ray), "size {size}, distance {distance}: {ray:?}");
+        };
+        for triangle in 0..mesh.triangle_count() as u32 {
+            let [a, b, c] = mesh.corners(triangle);
+            from_inside(a);
+            from_inside((a + b) * 0.5);
+            from_inside(b * 0.25 + c * 0.75);
+        }
+        let mut directions = Random::new(4);
+        for _ in 0..50_000 {
+            from_inside(directions.direction());
+        }
+    }
+}
+
+/// Promise 1 for meshes: a ray that leaves a convex mesh outward never meets it.
+#[test]
+fn a_ray_that_leaves_a_convex_mesh_never_meets_it_again() {
+    for size in [1e-3, 1.0, 1e3] {
+        for distance in [0.0, 1.0, 1e2, 1e4] {
+            let mut random = Random::new(6);
+            let transform = random.transform(size, distance);
+            let world = compile(&mesh_scene(ball(16, 32), transform));
+            for _ in 0..10_000 {
+                let origin = transform.point(random.direction() * 3.0);
+                let ray = Ray::new(origin, transform.point(random.point(0.8)) - origin);
+                let Some(hit) = world.intersect(&ray) else { continue };
+                let at = world.intersection(&ray, &hit);
+                let mut direction = random.direction();
+                let normal = at.geometric_normal;
+                if random.below(4) == 0 {
+                    direction = (direction - normal * direction.dot(normal)).normalize() + normal * 1e-6;
+                }
+                let outward = if direction.dot(normal) < 0.0 { -direction } else { direction };
+                let left = at.spawn(outward);
+                assert!(!world.occluded(&left), "size {size}, distance {distance}: {left:?}");
+                assert!(world.occluded(&at.spawn(-normal)), "size {size}, distance {distance}: {at:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn normals_of_sheared_and_mirrored_shapes_match_finite_differences() {
+    let mut random = Random::new(11);
+    let smooth = {
+        let mut data = ball(64, 128);
+        data.normals.clone_from(&data.positions);
+        Shape::Mesh(Arc::new(Mesh::new(data).unwrap()))
+    };
+    for round in 0..200 {
+        let shapes =
+            [Shape::Sphere, Shape::Cube, Shape::Cylinder { capped: true }, Shape::Plane, smooth.clone()];
+        let shape = shapes[round % 5].clone();
+        let flat = matches!(shape, Shape::Mesh(_));
+        let distance = random.between(0.0, 5.0);
+        let transform = random.transform(1.0, distance);
+        let mut scene = Scene::new("one");
+        scene.add(Node::shape("it", shape).with_transform(transform));
+        let world = compile(&scene);
+        let from = transform.point(random.direction().abs() * 4.0);
+        let to = transform.point(random.point(0.2));
+        let normal = surface_normal(&world, from, to, 1e-5);
+        let ray = Ray::new(from, (to - from).normalize());
+        let Some(at) = world.intersect(&ray).map(|hit| world.intersection(&ray, &hit)) else { continue };
+        assert!(!at.from_inside);
+        assert!(at.facing_normal().dot(ray.direction) < 0.0);
+        assert!((at.geometric_normal.length() - 1.0).abs() < 1e-12);
+        if let Some(normal) = normal {
+            let cosine = at.geometric_normal.dot(normal);
+            assert!(cosine > 1.0 - 1e-6, "{transform:?}: {normal} is not {}", at.geometric_normal);
+        }
+        if !flat {
+            assert_eq!(at.shading_normal, at.geometric_normal);
+        } else {
+            assert!(at.shading_normal.dot(at.geometric_normal) > 0.99);
+        }
+    }
+}
+
+/// The normal of the surface seen from `from`, by three neighbouring rays; none near an edge.
+fn surface_normal(world: &World, from: DVec3, to: DVec3, step: f64) -> Option<DVec3> {
+    let direction = (to - from).normalize();
+    let (u, v) = direction.any_orthonormal_pair();
+    let hit = |offset: DVec3| {
+        let ray = Ray::new(from, (direction + offset * step).normalize());
+        let hit = world.intersect(&ray)?;
+        Some((ray.at(hit.t), hit.primitive))
+    };
+    let (a, b, c) = (hit(DVec3::ZERO)?, hit(u)?, hit(v)?);
+    if a.1 != b.1 || a.1 != c.1 {
+        return None;
+    }
+    let normal = (b.0 - a.0).cross(c.0 - a.0).normalize();
+    Some(if normal.dot(direction) > 0.0 { -normal } else { normal })
+}
+
+#[test]
+fn a_ray_from_inside_is_told_so_even_in_a_mirrored_shape() {
+    for mirror in [1.0, -1.0] {
+        let mut scene = Scene::new("one");
+        let transform = Transform::scale(DVec3::new(mirror, 2.0, 1.0));
+        scene.add(Node::shape("ball", Shape::Sphere).with_transform(transform));
+        let mesh = Node::mesh("mesh", Mesh::new(ball(8, 16)).unwrap());
+        scene.add(mesh.with_transform(transform.then(Transform::translate(DVec3::X * 5.0))));
+        let world = compile(&scene);
+        for center in [DVec3::ZERO, DVec3::X * 5.0] {
+            let out = Ray::new(center, DVec3::new(0.1, 0.2, 1.0));
+            assert!(world.intersection(&out, &world.intersect(&out).unwrap()).from_inside);
+            let back = Ray::new(center + DVec3::Z * 3.0, DVec3::new(0.01, 0.02, -1.0));
+            assert!(!world.intersection(&back, &world.intersect(&back).unwrap()).from_inside);
+        }
+    }
+}
+
+#[test]
+fn instances_share_one_mesh_and_one_tree() {
+    let mut scene = Scene::new("instances");
+    let leaf = scene.insert(Node::mesh("leaf", soup(1, 100)));
+    let branch = scene.insert(Node::group("branch", [leaf, leaf, leaf]));
+    for i in 0..10 {
+        let place = Transform::translate(DVec3::X * f64::from(i));
+        scene.add(Node::group("tree", [branch]).with_transform(place));
+    }
+    let statistics = compile(&scene).statistics();
+    assert_eq!((statistics.objects, statistics.meshes), (30, 1));
+    assert_eq!((statistics.triangles, statistics.instanced_triangles), (100, 3000));
+}
+
+#[test]
+fn materials_are_inherited_from_the_nearest_ancestor() {
+    let mut scene = Scene::new("inheritance");
+    let red = scene.add_material(Material::named("red"));
+    let blue = scene.add_material(Material::named("blue"));
+    let plain = scene.insert(Node::shape("plain", Shape::Sphere));
+    let own = scene.insert(Node::shape("own", Shape::Sphere).with_material(blue));
+    scene.add(Node::group("group", [plain, own]).with_material(red));
+    scene.add(Node::shape("bare", Shape::Sphere));
+    let world = compile(&scene);
+    let names = world.objects().iter().map(|object| world.material(object.material()).name.as_str());
+    assert_eq!(names.collect::<Vec<_>>(), ["red", "blue", "default"]);
+}
+
+#[test]
+fn transforms_apply_from_the_leaf_to_the_root() {
+    let mut scene = Scene::new("nested");
+    let ball =
+        scene.insert(Node::shape("ball", Shape::Sphere).with_transform(Transform::translate(DVec3::X * 2.0)));
+    scene.add(Node::group("turned", [ball]).with_transform(Transform::rotate(DVec3::Z, 90.0)));
+    let world = compile(&scene);
+    let down = Ray::new(DVec3::Y * 9.0, DVec3::NEG_Y);
+    assert_eq!(world.intersect(&down).unwrap().t, 6.0);
+}
+
+#[test]
+fn a_tree_of_any_depth_compiles() {
+    let mut scene = Scene::new("deep");
+    let mut child = scene.insert(Node::shape("ball", Shape::Sphere));
+    for _ in 0..100_000 {
+        child = scene.insert(Node { children: vec![child], ..Node::default() });
+    }
+    scene.add(Node::group("top", [child]));
+    assert_eq!(compile(&scene).objects().len(), 1);
+}
+
+#[test]
+fn faults_of_a_scene_are_named() {
+    assert_eq!(compile_error(&Scene::new("empty")), CompileError::NothingToDraw);
+
+    let mut scene = Scene::new("cycle");
+    let a = scene.add(Node::group("a", []));
+    let b = scene.add_child(a, Node::group("b", [a]));
+    assert_eq!(compile_error(&scene), CompileError::Cycle { node: "`a`".into() });
+    scene.node_mut(b).children = vec![b];
+    assert_eq!(compile_error(&scene), CompileError::Cycle { node: "`b`".into() });
+
+    let mut scene = Scene::new("singular");
+    let flat = Transform::scale(DVec3::new(1.0, 0.0, 1.0));
+    scene.add(Node::shape("flat", Shape::Sphere).with_transform(flat));
+    assert_eq!(compile_error(&scene), CompileError::Singular { node: "`flat`".into() });
+    let mut scene = Scene::new("not finite");
+    scene.add(Node::shape("lost", Shape::Sphere).with_transform(Transform::translate(DVec3::NAN)));
+    assert_eq!(compile_error(&scene), CompileError::Singular { node: "`lost`".into() });
+
+    let mut scene = Scene::new("too many");
+    let mut node = scene.insert(Node::shape("ball", Shape::Sphere));
+    for _ in 0..60 {
+        node = scene.insert(Node::group("twice", [node, node]));
+    }
+    scene.add(Node::group("top", [node]));
+    assert_eq!(compile_error(&scene), CompileError::TooManyObjects { count: 1 << 60 });
+
+    let mut scene = crowd(1);
+    scene.add_light(DVec3::ZERO, Rgb::grey(f64::NAN));
+    assert_eq!(compile_error(&scene), CompileError::Light { what: "light 0".into() });
+
+    let wrong: [(Material, &str); 4] = [
+        (Material { ior: 0.0, ..Material::named("m") }, "ior"),
+        (Material { shininess: -1.0, ..Material::named("m") }, "shininess"),
+        (Material { reflect: Rgb::grey(-0.1), ..Material::named("m") }, "reflect"),
+        (Material { color: Texture::Solid(Rgb::grey(f64::INFINITY)), ..Material::named("m") }, "color"),
+    ];
+    for (material, name) in wrong {
+        let mut scene = crowd(1);
+        scene.add_material(material);
+        let CompileError::Material { material, property, .. } = compile_error(&scene) else {
+            panic!("{name} was not refused");
+        };
+        assert_eq!((material.as_str(), property), ("material `m`", name));
+    }
+}
+
+#[test]
+fn scales_that_are_tiny_but_regular_are_legal() {
+    let mut scene = Scene::new("tiny");
+    scene.add(Node::shape("mote", Shape::Sphere).with_transform(Transform::scale(DVec3::splat(1e-120))));
+    let world = compile(&scene);
+    assert!(world.occluded(&Ray::new(DVec3::Z, DVec3::NEG_Z)));
+}
+
+#[test]
+fn ten_thousand_objects_cost_little_more_than_one() {
+    let mut scene = Scene::new("field");
+    let leaf = scene.insert(Node::mesh("leaf", soup(1, 50)));
+    for (x, z) in (0..100).flat_map(|x| (0..100).map(move |z| (x, z))) {
+        let place = Transform::translate(DVec3::new(3.0 * f64::from(x), 0.0, 3.0 * f64::from(z)));
+        scene.add(Node::group("it", [leaf]).with_transform(place));
+    }
+    let world = compile(&scene);
+    let mut random = Random::new(12);
+    let (mut visits, rays) = (0, 2000);
+    for _ in 0..rays {
+        let to = DVec3::new(random.between(0.0, 300.0), 0.0, random.between(0.0, 300.0));
+        let ray = Ray::new(to + DVec3::Y * 20.0, DVec3::NEG_Y + random.point(0.3));
+        world.visit_objects(&ray, |_, _| {
+            visits += 1;
+            ray.t_max
+        });
+    }
+    assert!(visits < 10 * rays, "{} objects a ray", f64::from(visits) / f64::from(rays));
+}
+
+#[test]
+fn media_around_a_point_are_the_objects_that_it_is_inside_of() {
+    let mut scene = Scene::new("nested");
+    let glass = scene.add_material(Material { transmit: Rgb::WHITE, ior: 1.5, ..Material::default() });
+    let water = scene.add_material(Material { transmit: Rgb::WHITE, ior: 1.33, ..Material::default() });
+    let big = Transform::scale(DVec3::splat(3.0));
+    scene.add(Node::shape("outer", Shape::Sphere).with_material(glass).with_transform(big));
+    scene.add(Node::shape("inner", Shape::Cube).with_material(water));
+    scene.add(Node::shape("opaque", Shape::Cube).with_transform(big.then(big)));
+    let world = compile(&scene);
+    assert_eq!(Media::around(&world, DVec3::ZERO).ior(&world), 1.33);
+    assert_eq!(Media::around(&world, DVec3::X * 2.0).ior(&world), 1.5);
+    assert_eq!(Media::around(&world, DVec3::X * 4.0).ior(&world), 1.0);
+}

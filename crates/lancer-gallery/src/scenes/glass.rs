@@ -8,7 +8,7 @@ use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::{MaterialId, Node, Scene, Settings, Shape};
 
 /// A table of glass things.
-pub struct Glass;
+pub(crate) struct Glass;
 
 /// The dielectrics of the table.
 struct Clear {

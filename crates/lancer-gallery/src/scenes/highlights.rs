@@ -9,7 +9,7 @@ use lancer_core::scene::{Material, Node, Scene, Settings, Shape};
 use lancer_core::shade::specular_normalization;
 
 /// From plastic to metal, from dull to sharp.
-pub struct Highlights;
+pub(crate) struct Highlights;
 
 /// n from left to right: each highlight is half as wide as its left neighbour's.
 const SHININESS: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];

@@ -10,7 +10,7 @@ use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::{MaterialId, Node, Scene, Settings, Shape};
 
 /// A corridor without an end.
-pub struct Mirrors;
+pub(crate) struct Mirrors;
 
 impl BuiltinScene for Mirrors {
     fn name(&self) -> &'static str {

@@ -1,9 +1,14 @@
 //! One scene a file.
 
-pub mod glass;
-pub mod highlights;
-pub mod mirrors;
-pub mod occlusion;
-pub mod primitives;
-pub mod shadows;
-pub mod supersampling;
+mod bezier;
+pub(crate) mod glass;
+pub(crate) mod highlights;
+pub(crate) mod mirrors;
+pub(crate) mod occlusion;
+pub(crate) mod primitives;
+pub(crate) mod shadows;
+mod sky;
+pub(crate) mod sphereflake;
+pub(crate) mod supersampling;
+pub(crate) mod teapot;
+pub(crate) mod whitted;

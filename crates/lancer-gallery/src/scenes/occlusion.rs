@@ -8,7 +8,7 @@ use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::{AmbientOcclusion, Node, NodeId, Scene, Settings, Shape};
 
 /// Clay in corners.
-pub struct Occlusion;
+pub(crate) struct Occlusion;
 
 impl BuiltinScene for Occlusion {
     fn name(&self) -> &'static str {

@@ -10,7 +10,7 @@ use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::{AmbientOcclusion, MaterialId, Node, NodeId, Scene, Settings, Shape};
 
 /// Sphere, cube, cylinder, plane and meshes.
-pub struct Primitives;
+pub(crate) struct Primitives;
 
 impl BuiltinScene for Primitives {
     fn name(&self) -> &'static str {

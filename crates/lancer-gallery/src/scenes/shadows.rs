@@ -8,7 +8,7 @@ use lancer_core::geometry::DVec3;
 use lancer_core::scene::{MaterialId, Node, NodeId, Scene, Settings, Shape};
 
 /// Coloured hard shadows that cross.
-pub struct Shadows;
+pub(crate) struct Shadows;
 
 impl BuiltinScene for Shadows {
     fn name(&self) -> &'static str {

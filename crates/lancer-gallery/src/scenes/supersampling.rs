@@ -8,7 +8,7 @@ use lancer_core::geometry::DVec3;
 use lancer_core::scene::{MaterialId, Node, NodeId, Scene, Settings, Shape};
 
 /// What n x n subpixels are for.
-pub struct Supersampling;
+pub(crate) struct Supersampling;
 
 const SEATS: u32 = 16;
 const RADIUS: f64 = 4.0;

@@ -19,8 +19,9 @@ const PARALLEL: usize = 4096;
 /// How many splits in a row may cost more than a leaf: some gain only by what they allow below them.
 const PATIENCE: u32 = 2;
 
-/// Primitives in a leaf where the user does not say.
-const DEFAULT_LEAF: u32 = 1;
+/// Primitives in a leaf where the user does not say. On a scanned mesh 1 doubles the memory and gains nothing, 8
+/// costs a tenth of the rays per second.
+const DEFAULT_LEAF: u32 = 3;
 
 pub(super) fn build(primitives: &impl Primitives, settings: KdSettings) -> Result<KdTree, BuildError> {
     let count = primitives.count();

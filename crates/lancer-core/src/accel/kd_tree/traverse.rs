@@ -11,10 +11,10 @@ use arrayvec::ArrayVec;
 
 /// A ray made ready for a tree.
 struct Crossing {
-    origin: DVec3,
-    inverse: DVec3,
+    origin: [f64; 3],
+    inverse: [f64; 3],
     /// By how much t may be wrong at a plane of each axis.
-    slack: DVec3,
+    slack: [f64; 3],
 }
 
 /// A subtree to visit later, and the stretch of the ray inside of it.
@@ -35,20 +35,21 @@ const LEAST_COMPONENT: f64 = 1e-290;
 impl Crossing {
     fn new(ray: &Ray, tree: &KdTree) -> Self {
         let away_from_zero = |x: f64| if x.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(x) } else { x };
-        let inverse = ray.direction.to_array().map(|x| 1.0 / away_from_zero(x));
-        let inverse = DVec3::from_array(inverse);
+        let d = ray.direction;
+        let inverse = DVec3::new(away_from_zero(d.x), away_from_zero(d.y), away_from_zero(d.z)).recip();
         let magnitude = ray.origin.abs() + tree.bounds.to_bounds().magnitude();
         let slack = magnitude * inverse.abs() * (SLACK_OPERATIONS * UNIT_ROUNDOFF);
-        Self { origin: ray.origin, inverse, slack }
+        Self { origin: ray.origin.to_array(), inverse: inverse.to_array(), slack: slack.to_array() }
     }
 
     /// The stretch of the ray in the tree's box, if there is one.
     fn clip(&self, tree: &KdTree, t_max: f64) -> Option<(f64, f64)> {
         let bounds = tree.bounds.to_bounds();
-        let a = (bounds.min - self.origin) * self.inverse;
-        let b = (bounds.max - self.origin) * self.inverse;
-        let enter = (a.min(b) - self.slack).max_element().max(0.0);
-        let exit = (a.max(b) + self.slack).min_element().min(t_max);
+        let [origin, inverse, slack] = [self.origin, self.inverse, self.slack].map(DVec3::from_array);
+        let a = (bounds.min - origin) * inverse;
+        let b = (bounds.max - origin) * inverse;
+        let enter = (a.min(b) - slack).max_element().max(0.0);
+        let exit = (a.max(b) + slack).min_element().min(t_max);
         (enter <= exit).then_some((enter, exit))
     }
 }
@@ -71,14 +72,11 @@ impl KdTree {
         loop {
             match self.nodes[node as usize].kind() {
                 Kind::Inner { axis, position, above } => {
-                    let origin = crossing.origin[axis];
-                    let position = f64::from(position);
-                    let t = (position - origin) * crossing.inverse[axis];
+                    let t = (f64::from(position) - crossing.origin[axis]) * crossing.inverse[axis];
                     let (earliest, latest) = (t - crossing.slack[axis], t + crossing.slack[axis]);
-                    let starts_below =
-                        origin < position || (origin == position && crossing.inverse[axis] <= 0.0);
-                    let (near, far) = if starts_below { (node + 1, above) } else { (above, node + 1) };
-                    if earliest > exit || latest < 0.0 {
+                    let rising = crossing.inverse[axis] > 0.0;
+                    let (near, far) = if rising { (node + 1, above) } else { (above, node + 1) };
+                    if earliest > exit {
                         node = near;
                     } else if latest < enter {
                         node = far;

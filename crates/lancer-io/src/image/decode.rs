@@ -1,0 +1,77 @@
+//! Texture files to 8-bit sRGB images.
+//!
+//! In: a path that the resolver allowed. Out: an [`ImageTexture`]. Images of 16 bits are rounded to 8, grey
+//! and palettes become RGB, and alpha is dropped: a texture is a colour. Pixels are counted from the header,
+//! before any is decoded.
+
+use crate::diagnostics::{Diagnostic, LoadError};
+use crate::resolver::Resolver;
+use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits as DecoderLimits};
+use lancer_core::scene::ImageTexture;
+use std::io::Cursor;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The formats that are read, as users know them.
+const FORMATS: &str = "PNG, JPEG, BMP, TGA";
+
+/// Bytes that a decoder may hold for each pixel of the largest texture: four channels of 16 bits.
+const BYTES_PER_PIXEL: u64 = 8;
+
+/// What a decoder may hold beyond the pixels: tables, text chunks and colour profiles.
+const DECODER_OVERHEAD: u64 = 16 << 20;
+
+/// Reads a texture: PNG, JPEG, BMP or TGA, told apart by content and, for TGA, by extension.
+///
+/// # Errors
+/// The file cannot be read, is of another format, is broken, or has more pixels than
+/// [`Limits::texture_pixels`](crate::limits::Limits::texture_pixels).
+pub fn load_texture(path: &Path, resolver: &Resolver) -> Result<Arc<ImageTexture>, LoadError> {
+    let bytes = resolver.read(path)?;
+    let image = decode(path, &bytes, resolver.limits.texture_pixels)?;
+    let rgb = image.into_rgb8();
+    let (width, height) = rgb.dimensions();
+    let texels = rgb.pixels().map(|pixel| pixel.0).collect();
+    let texture =
+        ImageTexture::new(width, height, texels).map_err(|error| LoadError::new(path, error.to_string()))?;
+    Ok(Arc::new(texture))
+}
+
+fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, LoadError> {
+    let format = format_of(path, bytes)?;
+    let broken = |error: ImageError| LoadError::new(path, message_of(&error));
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = DecoderLimits::default();
+    limits.max_alloc = Some(most_pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(DECODER_OVERHEAD));
+    reader.limits(limits);
+
+    let decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > most_pixels {
+        let message = format!("{width} x {height} pixels are more than {most_pixels}, the most of a texture");
+        return Err(LoadError::new(path, message));
+    }
+    DynamicImage::from_decoder(decoder).map_err(broken)
+}
+
+fn format_of(path: &Path, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
+    let is_read = |format: &ImageFormat| {
+        matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp | ImageFormat::Tga)
+    };
+    let format = ::image::guess_format(bytes).ok().or_else(|| {
+        // TGA has no signature.
+        let extension = path.extension()?.to_str()?;
+        extension.eq_ignore_ascii_case("tga").then_some(ImageFormat::Tga)
+    });
+    format.filter(is_read).ok_or_else(|| {
+        Diagnostic::new(path, "is not an image of a format that is read")
+            .with_hint(format!("textures are read from {FORMATS}"))
+            .into()
+    })
+}
+
+/// A decoder's error on one line, without the names of its types.
+fn message_of(error: &ImageError) -> String {
+    let words = error.to_string();
+    format!("is a broken image: {}", words.split_whitespace().collect::<Vec<_>>().join(" "))
+}

@@ -1,0 +1,8 @@
+//! Images from and to files.
+//!
+//! [`load_texture`] reads what materials use; [`encode`] writes what was rendered.
+
+mod decode;
+pub mod encode;
+
+pub use decode::load_texture;

@@ -1,0 +1,91 @@
+//! Whatever a user names, read into a scene: the kind of a file is told by its extension.
+
+use crate::diagnostics::{Diagnostic, LoadError};
+use crate::image::load_texture;
+use crate::limits::Limits;
+use crate::model::{self, ModelFormat};
+use crate::resolver::Resolver;
+use crate::scene_file::{self, Assets, Override};
+use crate::showcase;
+use lancer_core::scene::{ImageTexture, Scene};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How a file is read.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// How much it may ask for.
+    pub limits: Limits,
+    /// Whether it may refer to files outside of its own directory.
+    pub allow_outside: bool,
+    /// What is to be read in place of what it says.
+    pub overrides: Vec<Override>,
+}
+
+/// A scene, and what its author should know of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What is odd but no error, in the order of the places.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The extensions of scene files.
+pub const SCENE_EXTENSIONS: [&str; 3] = ["yaml", "yml", "json"];
+
+/// Reads a scene file, or a model, which gets a camera that frames it, lights and a ground.
+///
+/// # Errors
+/// All that is wrong with the file and with what it refers to.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    let resolver = Resolver::for_file(path, options.allow_outside, options.limits);
+    if is_scene_file(path) {
+        let bytes = resolver.read(path)?;
+        let mut assets = Files { resolver };
+        return scene_file::read(path, &bytes, &options.overrides, &mut assets, &options.limits);
+    }
+    if ModelFormat::of_path(path).is_none() {
+        return Err(unknown_kind(path));
+    }
+    let mut model = model::load(path, &resolver)?;
+    let warnings = std::mem::take(&mut model.warnings);
+    let mut scene = showcase::scene_of_model(model);
+    scene_file::apply_overrides(&mut scene, &options.overrides)?;
+    Ok(Loaded { scene, warnings })
+}
+
+fn is_scene_file(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|found| SCENE_EXTENSIONS.iter().any(|known| found.eq_ignore_ascii_case(known)))
+}
+
+fn unknown_kind(path: &Path) -> LoadError {
+    let models = ModelFormat::ALL.iter().map(|format| format.extension());
+    let known =
+        SCENE_EXTENSIONS.into_iter().chain(models).map(|known| format!(".{known}")).collect::<Vec<_>>();
+    let hint = format!("the kind of a file is told by its name: {}", known.join(", "));
+    Diagnostic::new(path, "is neither a scene file nor a model of a known format").with_hint(hint).into()
+}
+
+/// The models and images of a scene file, from disk.
+struct Files {
+    resolver: Resolver,
+}
+
+impl Assets for Files {
+    fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String> {
+        self.resolver.resolve(from, reference)
+    }
+
+    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<scene_file::Model, LoadError> {
+        let mut model = model::load(path, &self.resolver)?;
+        let warnings = std::mem::take(&mut model.warnings);
+        let node = model.insert_into(scene);
+        Ok(scene_file::Model { root: scene.insert(node), warnings })
+    }
+
+    fn texture(&mut self, path: &Path) -> Result<Arc<ImageTexture>, LoadError> {
+        load_texture(path, &self.resolver)
+    }
+}

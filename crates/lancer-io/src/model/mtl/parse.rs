@@ -1,0 +1,243 @@
+//! The statements of a material library.
+//!
+//! In: its bytes. Out: definitions as written, and warnings. It knows nothing of the renderer's materials.
+
+use crate::diagnostics::Diagnostic;
+use crate::model::report::PassedOver;
+use crate::model::text::{Cursor, Source, Word, decode};
+use lancer_core::Rgb;
+
+/// A material as its library writes it; `None` for what it leaves out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Definition {
+    pub(super) name: String,
+    /// Kd.
+    pub(super) diffuse: Option<Rgb>,
+    /// Ks.
+    pub(super) specular: Option<Rgb>,
+    /// Ns.
+    pub(super) shininess: Option<f64>,
+    /// Ni.
+    pub(super) ior: Option<f64>,
+    /// d.
+    pub(super) dissolve: Option<f64>,
+    /// Tr, which is 1 - d.
+    pub(super) transparency: Option<f64>,
+    /// Tf.
+    pub(super) filter: Option<Rgb>,
+    pub(super) illum: Option<u32>,
+    /// The file that map_Kd names.
+    pub(super) map_kd: Option<String>,
+}
+
+/// What a library may hold that is not drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Maps other than map_Kd.
+    Map,
+    /// Ke.
+    Emission,
+    /// Options of map_Kd that would change the picture.
+    MapOption,
+    /// Statements whose values cannot be read.
+    Malformed,
+    /// Statements before the first `newmtl`.
+    Nameless,
+}
+
+impl Kind {
+    fn message(self, word: &str) -> String {
+        match self {
+            Self::Map => format!("`{word}` is not drawn: the only map that is, is map_Kd"),
+            Self::Emission => format!("`{word}` is not drawn: surfaces do not shine by themselves"),
+            Self::MapOption => format!("`{word}` is passed over: the map is used as it is"),
+            Self::Malformed => format!("the value of `{word}` cannot be read and is passed over"),
+            Self::Nameless => format!("`{word}` stands before the first newmtl and is passed over"),
+        }
+    }
+}
+
+/// All definitions of a library, in order, and what the user should know about it.
+pub(super) fn definitions(source: Source) -> (Vec<Definition>, Vec<Diagnostic>) {
+    let cursor = Cursor::new(source.bytes, 0);
+    let mut parser = Parser { cursor, definitions: Vec::new(), passed_over: PassedOver::new() };
+    while let Some(keyword) = parser.cursor.first_word() {
+        parser.statement(keyword);
+        parser.cursor.skip_line();
+    }
+    let warnings = parser.passed_over.warnings(source, Kind::message);
+    (parser.definitions, warnings)
+}
+
+struct Parser<'a> {
+    cursor: Cursor<'a>,
+    definitions: Vec<Definition>,
+    passed_over: PassedOver<'a, Kind>,
+}
+
+impl<'a> Parser<'a> {
+    fn statement(&mut self, keyword: Word<'a>) {
+        let lower = keyword.bytes.to_ascii_lowercase();
+        if lower == b"newmtl" {
+            let name = decode(self.cursor.rest_of_line().bytes).into_owned();
+            self.definitions.push(Definition { name, ..Definition::default() });
+            return;
+        }
+        let Some(mut definition) = self.definitions.pop() else {
+            return self.passed_over.add(Kind::Nameless, keyword);
+        };
+        match self.property(&lower, keyword, &mut definition) {
+            Some(()) => {}
+            None => self.passed_over.add(Kind::Malformed, keyword),
+        }
+        self.definitions.push(definition);
+    }
+
+    /// One statement of a material; `None` if its value cannot be read. Unknown ones are passed over: every
+    /// exporter has its own.
+    fn property(&mut self, lower: &[u8], keyword: Word<'a>, definition: &mut Definition) -> Option<()> {
+        match lower {
+            b"kd" => definition.diffuse = Some(self.color()?),
+            b"ks" => definition.specular = Some(self.color()?),
+            b"tf" => definition.filter = Some(self.color()?),
+            b"ns" => definition.shininess = Some(self.number()?),
+            b"ni" => definition.ior = Some(self.number()?),
+            b"d" => definition.dissolve = Some(self.dissolve()?),
+            b"tr" => definition.transparency = Some(self.number()?),
+            b"illum" => definition.illum = Some(self.number()? as u32),
+            b"map_kd" => definition.map_kd = Some(self.map()?),
+            b"ke" if !self.color()?.is_black() => self.passed_over.add(Kind::Emission, keyword),
+            _ if is_map(lower) => self.passed_over.add(Kind::Map, keyword),
+            _ => {}
+        }
+        Some(())
+    }
+
+    fn number(&mut self) -> Option<f64> {
+        self.cursor.word()?.number()
+    }
+
+    /// `d 0.5`, or `d -halo 0.5`, whose fading toward the edges is left out.
+    fn dissolve(&mut self) -> Option<f64> {
+        let first = self.cursor.word()?;
+        if first.bytes == b"-halo" { self.number() } else { first.number() }
+    }
+
+    /// `r g b`, or `r` alone for a grey. The forms `spectral` and `xyz` are not read.
+    fn color(&mut self) -> Option<Rgb> {
+        let r = self.number()?;
+        let Some(g) = self.cursor.word() else {
+            return Some(Rgb::grey(r));
+        };
+        Some(Rgb::new(r, g.number()?, self.number()?))
+    }
+
+    /// The file name of a map statement, after its options.
+    fn map(&mut self) -> Option<String> {
+        loop {
+            let before = self.cursor.clone();
+            let word = self.cursor.word()?;
+            let Some(values) = values_of_option(word.bytes) else {
+                self.cursor = before;
+                break;
+            };
+            self.skip_values(values);
+            if CHANGES_THE_PICTURE.contains(&word.bytes) {
+                self.passed_over.add(Kind::MapOption, word);
+            }
+        }
+        let name = decode(self.cursor.rest_of_line().bytes).trim_matches('"').to_owned();
+        (!name.is_empty()).then_some(name)
+    }
+
+    fn skip_values(&mut self, values: OptionValues) {
+        match values {
+            OptionValues::Words(count) => (0..count).for_each(|_| {
+                self.cursor.word();
+            }),
+            OptionValues::UpTo3Numbers => {
+                for _ in 0..3 {
+                    let before = self.cursor.clone();
+                    if self.cursor.word().and_then(|word| word.number()).is_none() {
+                        self.cursor = before;
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What follows an option of a map.
+#[derive(Clone, Copy)]
+enum OptionValues {
+    Words(usize),
+    UpTo3Numbers,
+}
+
+/// Map options whose absence shows; the others choose a filter or a channel.
+const CHANGES_THE_PICTURE: [&[u8]; 5] = [b"-o", b"-s", b"-t", b"-mm", b"-clamp"];
+
+fn values_of_option(word: &[u8]) -> Option<OptionValues> {
+    match word {
+        b"-o" | b"-s" | b"-t" => Some(OptionValues::UpTo3Numbers),
+        b"-mm" => Some(OptionValues::Words(2)),
+        b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-texres" | b"-boost" | b"-bm" | b"-imfchan"
+        | b"-type" => Some(OptionValues::Words(1)),
+        _ => None,
+    }
+}
+
+fn is_map(lower: &[u8]) -> bool {
+    lower.starts_with(b"map_") || matches!(lower, b"bump" | b"disp" | b"decal" | b"refl" | b"norm")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn parse(text: &str) -> (Vec<Definition>, Vec<Diagnostic>) {
+        definitions(Source { path: Path::new("f.mtl"), bytes: text.as_bytes() })
+    }
+
+    fn map_of(statement: &str) -> Option<String> {
+        parse(&format!("newmtl m\n{statement}\n")).0.remove(0).map_kd
+    }
+
+    #[test]
+    fn statements_fill_the_last_definition() {
+        let (found, warnings) = parse(
+            "newmtl a b\r\nKd 0.1 .2 0.3\nNs 10\n\tillum 2\nnewmtl c\nKd 0.5\nKs 1 1 1\nd 0.5\nNi 1.3\nTf 1 0 0\n",
+        );
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].name, "a b");
+        assert_eq!(found[0].diffuse, Some(Rgb::new(0.1, 0.2, 0.3)));
+        assert_eq!((found[0].shininess, found[0].illum), (Some(10.0), Some(2)));
+        assert_eq!(found[1].diffuse, Some(Rgb::grey(0.5)));
+        assert_eq!((found[1].dissolve, found[1].ior), (Some(0.5), Some(1.3)));
+        assert!(warnings.is_empty());
+    }
+
+    #[test]
+    fn map_names_keep_blanks_and_lose_options() {
+        assert_eq!(map_of("map_Kd wood.png").as_deref(), Some("wood.png"));
+        assert_eq!(map_of("map_Kd -s 1 2 -o 0.5 my wood.png ").as_deref(), Some("my wood.png"));
+        assert_eq!(map_of("map_kd -clamp on -mm 0 1 a\\b.png").as_deref(), Some("a\\b.png"));
+        assert_eq!(map_of("map_Kd -s 1 1 1 2.png").as_deref(), Some("2.png"));
+        assert_eq!(map_of("map_Kd"), None);
+    }
+
+    #[test]
+    fn what_is_not_drawn_is_told_once_a_kind() {
+        let (_, warnings) = parse(
+            "Kd 1 1 1\nnewmtl a\nKd nan 0 0\nKe 1 1 1\nKe 0 0 0\nmap_Bump b.png\nbump b.png\nmap_Kd -s 2 2 a.png\n",
+        );
+        let lines = warnings.iter().map(|warning| warning.location.unwrap().line).collect::<Vec<_>>();
+        assert_eq!(lines, [1, 3, 4, 6, 8]);
+        assert!(
+            warnings[3].message.contains("`map_Bump` is not drawn")
+                && warnings[3].message.ends_with("(and 1 more)")
+        );
+    }
+}

@@ -1,0 +1,327 @@
+//! Polygons as files hold them, made into meshes.
+//!
+//! In: positions, normals and texture coordinates, each with indices of its own, and polygons of them in
+//! groups. Out: validated triangle meshes in single precision, relative to one origin. It knows no file
+//! format; the loaders have checked every index and number.
+
+use super::triangulate::{MAX_CLIPPED_CORNERS, TooManyCorners, Triangulator};
+use lancer_core::geometry::{Bounds, DVec3};
+use lancer_core::mesh::{Mesh, MeshData, MeshError};
+use std::collections::HashMap;
+
+/// The index of an attribute that a corner lacks.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A corner of a polygon: indices into the three attribute arrays; all but the position may be [`NONE`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Corner {
+    pub(super) position: u32,
+    pub(super) uv: u32,
+    pub(super) normal: u32,
+}
+
+/// A polygon: its corners run from `first` to the next polygon's.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    first: u32,
+    group: u32,
+}
+
+/// All polygons of one file.
+#[derive(Default)]
+pub(super) struct Polygons {
+    /// In double precision, for models far from the origin.
+    pub(super) positions: Vec<DVec3>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    /// Of unit length, or zero where the file's was zero.
+    pub(super) normals: Vec<[f32; 3]>,
+    pub(super) corners: Vec<Corner>,
+    faces: Vec<Face>,
+    triangles: usize,
+}
+
+/// What keeps polygons from being meshes.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PolygonError {
+    #[error("face {face} is concave and has {corners} corners; the most are {MAX_CLIPPED_CORNERS}")]
+    TooManyCorners { face: usize, corners: usize },
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Meshes with their groups, and the point that their vertices are relative to.
+pub(super) struct Meshes {
+    pub(super) meshes: Vec<(u32, Mesh)>,
+    pub(super) origin: DVec3,
+}
+
+impl Polygons {
+    /// Ends the polygon whose corners have been pushed since the last one. One of fewer than three corners
+    /// is dropped: it covers nothing.
+    ///
+    /// Returns whether it was kept.
+    pub(super) fn end_face(&mut self, first: usize, group: u32) -> bool {
+        let corners = self.corners.len() - first;
+        if corners < 3 {
+            self.corners.truncate(first);
+            return false;
+        }
+        self.triangles += corners - 2;
+        self.faces.push(Face { first: first as u32, group });
+        true
+    }
+
+    /// The number of triangles that the polygons will give.
+    pub(super) fn triangles(&self) -> usize {
+        self.triangles
+    }
+
+    /// Whether 32-bit indices still name every corner and attribute.
+    pub(super) fn is_indexable(&self) -> bool {
+        [self.positions.len(), self.uvs.len(), self.normals.len(), self.corners.len()]
+            .iter()
+            .all(|&length| length < NONE as usize)
+    }
+
+    /// The meshes: for each group in order, first its polygons with a normal at every corner, then those
+    /// without, which become flat facets.
+    ///
+    /// # Errors
+    /// See [`PolygonError`].
+    ///
+    /// # Panics
+    /// Where an index is out of range.
+    pub(super) fn into_meshes(self) -> Result<Meshes, PolygonError> {
+        let used = self.corners.iter().map(|corner| self.positions[corner.position as usize]);
+        let origin = origin_for(Bounds::of_points(used));
+        let mut builder = MeshBuilder::new(&self, origin);
+        let mut meshes = Vec::new();
+        let parts = self.parts_of_faces();
+        for faces in in_order(&parts).chunk_by(|&a, &b| parts[a as usize] == parts[b as usize]) {
+            let Part { group, facets } = parts[faces[0] as usize];
+            meshes.push((group, builder.build(faces, !facets)?));
+        }
+        Ok(Meshes { meshes, origin })
+    }
+
+    /// For each face the part that it belongs to.
+    fn parts_of_faces(&self) -> Vec<Part> {
+        let has_normal = |corner: &Corner| {
+            self.normals.get(corner.normal as usize).is_some_and(|&normal| normal != [0.0; 3])
+        };
+        let part = |i: usize| {
+            let facets = !self.corners_of(i).iter().all(has_normal);
+            Part { group: self.faces[i].group, facets }
+        };
+        (0..self.faces.len()).map(part).collect()
+    }
+
+    fn corners_of(&self, face: usize) -> &[Corner] {
+        let end = self.faces.get(face + 1).map_or(self.corners.len(), |next| next.first as usize);
+        &self.corners[self.faces[face].first as usize..end]
+    }
+}
+
+/// Which mesh a face goes to, in the order of the meshes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    group: u32,
+    /// Without a normal at some corner.
+    facets: bool,
+}
+
+/// The places of `keys` sorted by key, equal ones in their order.
+fn in_order(keys: &[impl Ord]) -> Vec<u32> {
+    let mut order = (0..keys.len() as u32).collect::<Vec<_>>();
+    order.sort_by(|&a, &b| keys[a as usize].cmp(&keys[b as usize]));
+    order
+}
+
+/// How many times its size a model may be away from the origin before it is moved there: single precision
+/// then leaves 1/2^20 of the size, where the eye sees no step. Less would move models for nothing.
+const FAR: f64 = 16.0;
+
+/// The point that vertices are stored relative to: the origin itself, or for a model far from it, a point
+/// near its middle whose coordinates are short binary numbers, so that the sum with a vertex is exact.
+fn origin_for(bounds: Bounds) -> DVec3 {
+    let size = bounds.extent().max_element();
+    if bounds.is_empty() || bounds.magnitude().max_element() <= FAR * size {
+        return DVec3::ZERO;
+    }
+    if size == 0.0 {
+        return bounds.min;
+    }
+    let step = power_of_two_below(size);
+    (bounds.center() / step).round() * step
+}
+
+/// The greatest power of two up to a positive normal number.
+fn power_of_two_below(x: f64) -> f64 {
+    const EXPONENT_BITS: u64 = 0x7ff << 52;
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & EXPONENT_BITS)
+}
+
+/// Builds meshes one after another from the polygons of one file.
+struct MeshBuilder<'a> {
+    polygons: &'a Polygons,
+    origin: DVec3,
+    vertices: VertexTable,
+    triangulator: Triangulator,
+}
+
+impl<'a> MeshBuilder<'a> {
+    fn new(polygons: &'a Polygons, origin: DVec3) -> Self {
+        let vertices = VertexTable::new(polygons.positions.len());
+        Self { polygons, origin, vertices, triangulator: Triangulator::default() }
+    }
+
+    /// The mesh of some faces, all with normals or all without.
+    fn build(&mut self, faces: &[u32], smooth: bool) -> Result<Mesh, PolygonError> {
+        let polygons = self.polygons;
+        let mut indices = Vec::with_capacity(faces.len());
+        let (mut vertices, mut points) = (Vec::new(), Vec::new());
+        for &face in faces {
+            let corners = polygons.corners_of(face as usize);
+            vertices.clear();
+            vertices.extend(corners.iter().map(|&corner| {
+                let normal = if smooth { corner.normal } else { NONE };
+                self.vertices.index_of(Corner { normal, ..corner })
+            }));
+            points.clear();
+            points.extend(corners.iter().map(|corner| polygons.positions[corner.position as usize]));
+            let triangles = self.triangulator.triangulate(&points).map_err(|TooManyCorners| {
+                PolygonError::TooManyCorners { face: face as usize + 1, corners: points.len() }
+            })?;
+            indices.extend(triangles.iter().map(|triangle| triangle.map(|i| vertices[i as usize])));
+        }
+        Ok(Mesh::new(self.mesh_data(smooth, indices))?)
+    }
+
+    /// The arrays of the vertices collected, which are then forgotten.
+    fn mesh_data(&mut self, smooth: bool, indices: Vec<[u32; 3]>) -> MeshData {
+        let (polygons, origin) = (self.polygons, self.origin);
+        let corners = self.vertices.take();
+        let position = |corner: &Corner| {
+            (polygons.positions[corner.position as usize] - origin).to_array().map(|x| x as f32)
+        };
+        let normal = |corner: &Corner| polygons.normals[corner.normal as usize];
+        let uv = |corner: &Corner| polygons.uvs.get(corner.uv as usize).copied().unwrap_or_default();
+        let has_uvs = corners.iter().any(|corner| corner.uv != NONE);
+        MeshData {
+            positions: corners.iter().map(position).collect(),
+            normals: if smooth { corners.iter().map(normal).collect() } else { Vec::new() },
+            uvs: if has_uvs { corners.iter().map(uv).collect() } else { Vec::new() },
+            indices,
+        }
+    }
+}
+
+/// Gives each combination of attributes one vertex.
+///
+/// Most positions occur in a single combination, which a plain array finds; further ones are hashed, by the
+/// standard library's keyed hash, since a file's author may choose them.
+struct VertexTable {
+    corners: Vec<Corner>,
+    /// For each position the first vertex there, or [`NONE`].
+    first: Vec<u32>,
+    others: HashMap<Corner, u32>,
+}
+
+impl VertexTable {
+    fn new(positions: usize) -> Self {
+        Self { corners: Vec::new(), first: vec![NONE; positions], others: HashMap::new() }
+    }
+
+    fn index_of(&mut self, corner: Corner) -> u32 {
+        let new = self.corners.len() as u32;
+        let first = &mut self.first[corner.position as usize];
+        let index = if *first == NONE {
+            *first = new;
+            new
+        } else if self.corners[*first as usize] == corner {
+            *first
+        } else {
+            *self.others.entry(corner).or_insert(new)
+        };
+        if index == new {
+            self.corners.push(corner);
+        }
+        index
+    }
+
+    /// The vertices in order. The table is empty then, at a cost of what it held, not of all positions.
+    fn take(&mut self) -> Vec<Corner> {
+        for corner in &self.corners {
+            self.first[corner.position as usize] = NONE;
+        }
+        self.others = HashMap::new();
+        std::mem::take(&mut self.corners)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(position: u32, normal: u32) -> Corner {
+        Corner { position, uv: NONE, normal }
+    }
+
+    fn square_at(offset: DVec3) -> Polygons {
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        let mut polygons = Polygons {
+            positions: positions.map(|position| position + offset).to_vec(),
+            normals: vec![[0.0, 0.0, 1.0]],
+            ..Polygons::default()
+        };
+        polygons.corners.extend([0, 1, 2].map(|i| corner(i, 0)));
+        assert!(polygons.end_face(0, 0));
+        polygons.corners.extend([2, 3, 0].map(|i| corner(i, NONE)));
+        assert!(polygons.end_face(3, 0));
+        polygons
+    }
+
+    #[test]
+    fn faces_without_normals_become_a_part_of_facets() {
+        let meshes = square_at(DVec3::ZERO).into_meshes().unwrap().meshes;
+        assert_eq!(meshes.len(), 2);
+        assert_eq!(meshes[0].1.data().normals.len(), 3);
+        assert!(meshes[1].1.data().normals.is_empty());
+        assert_eq!(meshes[1].1.triangle_count(), 1);
+    }
+
+    #[test]
+    fn a_zero_normal_counts_as_none() {
+        let mut polygons = square_at(DVec3::ZERO);
+        polygons.normals = vec![[0.0; 3]];
+        let meshes = polygons.into_meshes().unwrap().meshes;
+        assert_eq!(meshes.len(), 1);
+        assert_eq!(meshes[0].1.triangle_count(), 2);
+        assert_eq!(meshes[0].1.data().positions.len(), 4, "shared corners are one vertex");
+    }
+
+    #[test]
+    fn far_models_are_stored_exactly_around_a_short_origin() {
+        let far = DVec3::new(1e7 + 0.25, -3.0, 2e9);
+        let Meshes { meshes, origin } = square_at(far).into_meshes().unwrap();
+        let [a, b, c] = meshes[0].1.corners(0);
+        assert_eq!(
+            [a + origin, b + origin, c + origin],
+            [far, far + DVec3::X, far + DVec3::new(1.0, 1.0, 0.0)]
+        );
+        assert_eq!(origin, origin.round());
+    }
+
+    #[test]
+    fn near_models_stay_where_they_are() {
+        assert_eq!(square_at(DVec3::splat(8.0)).into_meshes().unwrap().origin, DVec3::ZERO);
+    }
+
+    #[test]
+    fn polygons_of_two_corners_are_dropped() {
+        let mut polygons = Polygons::default();
+        polygons.corners.extend([0, 1].map(|i| corner(i, NONE)));
+        assert!(!polygons.end_face(0, 0));
+        assert_eq!((polygons.corners.len(), polygons.triangles()), (0, 0));
+    }
+}

@@ -1,0 +1,140 @@
+//! A bare model made into a scene that shows it well.
+//!
+//! In: a model of any size, anywhere. Out: a scene with a camera that frames it, three lights, a ground and
+//! ambient occlusion, all in proportion to the model. The model is taken to stand on -Y and to face +Z.
+
+use crate::model::Model;
+use lancer_core::Rgb;
+use lancer_core::camera::Camera;
+use lancer_core::geometry::{Bounds, DVec3, Transform, portable};
+use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, Scene, Settings, Shape};
+use std::f64::consts::PI;
+
+/// From the model toward the camera: from the front, the right and a little above, so that three sides show.
+const TOWARD_CAMERA: DVec3 = DVec3::new(0.6, 0.4, 1.0);
+
+/// The camera's vertical angle in degrees: about a portrait lens, which does not distort.
+const FIELD_OF_VIEW: f64 = 35.0;
+
+/// How much larger than the model's box the picture is; below 1 corners are cut off, far above it is small.
+const MARGIN: f64 = 1.12;
+
+/// How far lights are, in diagonals of the model. Nearer, its near side would be much brighter than its far
+/// one (at 4, by 1.3 at most); further makes no difference.
+const LIGHT_DISTANCE: f64 = 4.0;
+
+/// A light: where it is from, in the camera's frame (right, up, toward the camera), and what it gives a white
+/// surface that faces it at the model's middle.
+struct Lamp {
+    name: &'static str,
+    from: DVec3,
+    radiance: f64,
+}
+
+/// Three lights as photographers set them. Key, fill and ambient light together give a plaster that faces the
+/// key light about 0.8, which leaves room for the near side and for the highlight. All stand high: one near
+/// the ground would burn a spot into it.
+const LAMPS: [Lamp; 3] = [
+    Lamp { name: "key", from: DVec3::new(-0.7, 0.9, 0.8), radiance: 0.62 },
+    Lamp { name: "fill", from: DVec3::new(1.0, 0.6, 0.6), radiance: 0.18 },
+    Lamp { name: "rim", from: DVec3::new(0.5, 1.8, -0.9), radiance: 0.35 },
+];
+
+/// L_a: fills what no light reaches, so that ambient occlusion shows, and does not flatten the rest.
+const AMBIENT: f64 = 0.25;
+
+/// How far geometry occludes ambient light, in diagonals: creases and the contact with the ground darken,
+/// not whole sides.
+const OCCLUSION_DISTANCE: f64 = 0.2;
+
+/// Directions of ambient occlusion at a point: with 2 x 2 subpixels, 64 a pixel, of little noise.
+const OCCLUSION_SAMPLES: u32 = 16;
+
+/// How far below the model the ground lies, in diagonals: too little to see, and enough that a flat base and
+/// the ground are not one surface.
+const GROUND_GAP: f64 = 1e-4;
+
+/// The scene that shows a model.
+pub fn scene_of_model(model: Model) -> Scene {
+    let bounds = model.bounds();
+    let diagonal = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
+    let mut scene = Scene::new(model.name.clone());
+    scene.settings = settings(diagonal);
+    scene.camera = framing_camera(bounds, diagonal, scene.settings);
+    scene.ambient = Rgb::grey(AMBIENT);
+    scene.background = Rgb::from_srgb_hex(0xc3_cdd9);
+    scene.lights = lights(bounds.center(), diagonal, &scene.camera);
+
+    let plaster = scene.add_material(plaster());
+    let ground = scene.add_material(ground_material());
+    let height = bounds.min.y - GROUND_GAP * diagonal;
+    let at = DVec3::new(bounds.center().x, height, bounds.center().z);
+    let ground = Node::shape("ground", Shape::Plane).with_material(ground);
+    scene.add(ground.with_transform(Transform::translate(at)));
+    let model = model.insert_into(&mut scene).with_material(plaster);
+    scene.add(model);
+    scene
+}
+
+fn settings(diagonal: f64) -> Settings {
+    let ao = AmbientOcclusion { samples: OCCLUSION_SAMPLES, distance: OCCLUSION_DISTANCE * diagonal };
+    Settings { samples: 2, ao, ..Settings::default() }
+}
+
+/// What a model without materials is made of: a warm light plaster with a small highlight.
+fn plaster() -> Material {
+    Material {
+        color: Rgb::new(0.80, 0.77, 0.72).into(),
+        specular: Rgb::grey(0.006),
+        shininess: 40.0,
+        ..Material::named("plaster")
+    }
+}
+
+fn ground_material() -> Material {
+    Material { color: Rgb::grey(0.55).into(), ..Material::named("ground") }
+}
+
+/// The camera nearest to the model from which all corners of its box are in the picture.
+///
+/// Across the picture, a corner at x to the right and z toward the camera is inside where
+/// |x - eye_x| <= t (eye_z - z), with t the tangent of half the angle of view. The corners' greatest x + t z
+/// and -x + t z thus bound the eye, and the same holds up the picture.
+fn framing_camera(bounds: Bounds, diagonal: f64, settings: Settings) -> Camera {
+    let center = bounds.center();
+    let toward = Camera { eye: TOWARD_CAMERA, target: DVec3::ZERO, fov: FIELD_OF_VIEW, ..Camera::default() };
+    let [right, up, backward] = toward.frame().expect("the direction is neither zero nor up");
+    let vertical = portable::tan(0.5 * FIELD_OF_VIEW.to_radians()) / MARGIN;
+    let horizontal = vertical * f64::from(settings.width) / f64::from(settings.height);
+
+    let corners = bounds.corners().map(|corner| corner - center);
+    let reach = |axis: DVec3, tangent: f64| {
+        let reaches = corners.iter().map(|corner| corner.dot(axis) + tangent * corner.dot(backward));
+        reaches.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let fit = |axis: DVec3, tangent: f64| {
+        let (plus, minus) = (reach(axis, tangent), reach(-axis, tangent));
+        ((plus + minus) / (2.0 * tangent), 0.5 * (plus - minus))
+    };
+    let (distance_across, x) = fit(right, horizontal);
+    let (distance_up, y) = fit(up, vertical);
+    // A model without size would have the eye in it.
+    let distance = distance_across.max(distance_up).max(0.5 * diagonal);
+    let target = center + right * x + up * y;
+    Camera { eye: target + backward * distance, target, ..toward }
+}
+
+fn lights(center: DVec3, diagonal: f64, camera: &Camera) -> Vec<Light> {
+    let [right, up, backward] = camera.frame().expect("the camera was made to be valid");
+    let distance = LIGHT_DISTANCE * diagonal;
+    let light = |lamp: &Lamp| {
+        let direction = (right * lamp.from.x + up * lamp.from.y + backward * lamp.from.z).normalize();
+        Light {
+            name: lamp.name.to_owned(),
+            position: center + direction * distance,
+            // The light at distance r is L / (pi r^2).
+            intensity: Rgb::grey(lamp.radiance * PI * distance * distance),
+        }
+    };
+    LAMPS.iter().map(light).collect()
+}

@@ -1,0 +1,272 @@
+//! The command line as typed.
+//!
+//! In: the words of the user. Out: [`Args`], in which every word has the right form and nothing more is known:
+//! no file was looked at. What they mean together is for [`crate::job`] to say.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args as ClapArgs, Parser, Subcommand};
+use lancer_core::accel::{Accelerator, KdTree};
+use lancer_core::render::Region;
+use lancer_core::scene::Settings;
+use lancer_io::scene_file::Override;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Told at the end of `--help`, since a program that calls this one wants to know.
+const EXIT_CODES: &str = "\
+Exit codes:
+    0  done
+    2  the command line is wrong
+    3  the scene or a model is at fault
+    4  the output could not be written
+    5  the render failed
+  130  interrupted";
+
+/// A recursive (Whitted) ray tracer: exact, repeatable pictures of scenes and meshes
+#[derive(Debug, Parser)]
+#[command(name = "lancer", version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+
+    /// Open the window on this scene: a built-in one, a scene file or a model
+    pub(crate) scene: Option<OsString>,
+}
+
+/// What the program is asked to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to a file
+    Render(Box<RenderArgs>),
+    /// List the built-in scenes
+    Scenes(ScenesArgs),
+    /// Tell what a scene or a model holds
+    Info(InfoArgs),
+    /// Read and validate a scene, and render nothing
+    Check(CheckArgs),
+    /// Print the JSON Schema of scene files
+    Schema,
+    /// Print the completions of a shell
+    Completions(CompletionsArgs),
+    /// Print the manual page
+    Man,
+}
+
+/// `lancer render`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct RenderArgs {
+    /// A built-in scene, a scene file (.yaml, .yml, .json) or a model
+    ///
+    /// Without it, the default built-in scene. `lancer scenes` lists the built-in ones. A model is framed, lit and
+    /// given a default material.
+    pub(crate) scene: Option<OsString>,
+
+    /// Where the picture goes: a .png or .exr file, or `-` for a PNG on standard output
+    ///
+    /// Without it, SCENE's name with .png, in the current directory, unless that would replace a file that lancer
+    /// did not make. The file is written whole or not at all.
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+
+    /// Print one JSON object about the render on standard output
+    #[arg(long, help_heading = "Messages")]
+    pub(crate) json: bool,
+
+    /// Draw no progress and print no summary; warnings and errors are still told
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
+/// What decides the pixels.
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Picture")]
+pub(crate) struct PictureArgs {
+    /// Pixels in a row
+    #[arg(long, value_name = "W")]
+    pub(crate) width: Option<u32>,
+
+    /// Rows of pixels
+    #[arg(long, value_name = "H")]
+    pub(crate) height: Option<u32>,
+
+    /// Each pixel is the mean of N x N rays
+    #[arg(long, value_name = "N")]
+    pub(crate) samples: Option<u32>,
+
+    /// How many reflections and refractions may follow one another
+    #[arg(long, value_name = "D")]
+    pub(crate) depth: Option<u32>,
+
+    /// Directions of ambient occlusion at each point; 0 turns it off
+    #[arg(long, value_name = "N")]
+    pub(crate) ao: Option<u32>,
+
+    /// How far geometry occludes, in scene units
+    #[arg(long, value_name = "D", allow_negative_numbers = true)]
+    pub(crate) ao_distance: Option<f64>,
+
+    /// One of the scene's named cameras
+    #[arg(long, value_name = "NAME")]
+    pub(crate) camera: Option<String>,
+
+    /// Render only the W x H pixels whose top left one is X,Y
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_region)]
+    pub(crate) region: Option<Region>,
+
+    /// Make the picture brighter (or darker, below 0) by EV stops
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure, default_value_t = 0.0, hide_default_value = true)]
+    pub(crate) exposure: f64,
+}
+
+/// What decides how long it takes, and nothing in the pixels.
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Speed (the picture stays the same)")]
+pub(crate) struct WorkArgs {
+    /// Threads to work on; without it, one a core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_THREADS))]
+    pub(crate) threads: Option<u32>,
+
+    /// How rays find what they hit
+    #[arg(long, value_name = "NAME", value_parser = accelerator_parser(), default_value = Accelerator::KdTree.name())]
+    pub(crate) accel: Accelerator,
+
+    /// Triangles in a leaf of the k-d tree, at most; without it, chosen by cost
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) kd_leaf: Option<u32>,
+
+    /// Depth of the k-d tree, at most; without it, chosen by size
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(KdTree::MAX_DEPTH)))]
+    pub(crate) kd_depth: Option<u32>,
+
+    /// The side in pixels of the squares that threads share
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Settings::MAX_SIDE)))]
+    pub(crate) tile_size: Option<u32>,
+}
+
+/// How files are read.
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Reading")]
+pub(crate) struct ReadingArgs {
+    /// Change a value of the scene, as in `--set camera.fov=60`; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<Override>,
+
+    #[command(flatten)]
+    pub(crate) access: AccessArgs,
+}
+
+/// Which files a scene may name.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct AccessArgs {
+    /// Let the scene name files outside of its own directory
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+}
+
+/// `lancer scenes`.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct ScenesArgs {
+    /// Print a JSON array instead
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `lancer info`.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct InfoArgs {
+    /// A built-in scene, a scene file or a model
+    pub(crate) file: OsString,
+
+    /// Print a JSON object instead
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) access: AccessArgs,
+}
+
+/// `lancer check`.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct CheckArgs {
+    /// A built-in scene, a scene file or a model
+    pub(crate) scene: OsString,
+
+    #[command(flatten)]
+    pub(crate) access: AccessArgs,
+}
+
+/// `lancer completions`.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// More threads than any machine has cores, and few enough that their stacks fit in memory.
+const MAX_THREADS: i64 = 1024;
+
+/// The most stops of exposure: 2 to this power, and its inverse, times any radiance worth showing is still an
+/// `f32`. Beyond 127 black would become 0 times infinity.
+const MAX_EXPOSURE: f64 = 100.0;
+
+fn accelerator_parser() -> impl TypedValueParser<Value = Accelerator> {
+    PossibleValuesParser::new(Accelerator::ALL.map(Accelerator::name)).map(|name| {
+        let named = |accelerator: &Accelerator| accelerator.name() == name;
+        Accelerator::ALL.into_iter().find(named).expect("the parser lets only these names through")
+    })
+}
+
+fn parse_region(text: &str) -> Result<Region, String> {
+    let numbers = text.split(',').map(|number| number.trim().parse::<u32>()).collect::<Result<Vec<_>, _>>();
+    match numbers.as_deref() {
+        Ok(&[x, y, width, height]) => Ok(Region { x, y, width, height }),
+        _ => Err("must be four whole numbers, as in 10,20,64,48".into()),
+    }
+}
+
+fn parse_exposure(text: &str) -> Result<f64, String> {
+    let stops = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
+    if stops.abs() <= MAX_EXPOSURE {
+        Ok(stops)
+    } else {
+        Err(format!("must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn a_region_is_four_numbers() {
+        assert_eq!(parse_region("1,2,3,4"), Ok(Region { x: 1, y: 2, width: 3, height: 4 }));
+        assert_eq!(parse_region("1, 2, 3, 4"), parse_region("1,2,3,4"));
+        for wrong in ["", "1,2,3", "1,2,3,4,5", "1,2,3,-4", "1,2,3,x", "1,2,3,4294967296"] {
+            assert!(parse_region(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn exposure_is_finite_and_moderate() {
+        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
+        for wrong in ["nan", "inf", "-inf", "101", "-101", "bright"] {
+            assert!(parse_exposure(wrong).is_err(), "{wrong}");
+        }
+    }
+}

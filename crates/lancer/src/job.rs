@@ -1,0 +1,179 @@
+//! A render as meant: what the words of [`crate::args`] come to.
+//!
+//! In: the words. Out: a [`Job`], in which all that can be known before the scene is read was checked; then, with
+//! the scene, a [`Shot`], in which the rest was. So nothing that was mistyped shows only after a long render.
+
+use crate::args::{PictureArgs, ReadingArgs, RenderArgs, WorkArgs};
+use crate::destination::Destination;
+use crate::error::Error;
+use crate::source::Source;
+use lancer_core::accel::KdSettings;
+use lancer_core::camera::Camera;
+use lancer_core::film::Tone;
+use lancer_core::render::{Control, Region, RenderError};
+use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
+use lancer_core::world::CompileOptions;
+use lancer_io::LoadOptions;
+use lancer_io::limits::Limits;
+use std::num::NonZero;
+
+/// What to render, how, and where to.
+pub(crate) struct Job {
+    pub(crate) source: Source,
+    pub(crate) load: LoadOptions,
+    pub(crate) compile: CompileOptions,
+    pub(crate) threads: usize,
+    pub(crate) tile_size: u32,
+    pub(crate) tone: Tone,
+    pub(crate) destination: Destination,
+    pub(crate) json: bool,
+    pub(crate) quiet: bool,
+    picture: PictureArgs,
+}
+
+/// What to render of a scene that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shot {
+    pub(crate) camera: Camera,
+    pub(crate) settings: Settings,
+    pub(crate) region: Option<Region>,
+}
+
+impl Job {
+    /// What the words mean.
+    ///
+    /// # Errors
+    /// They contradict one another; a setting is out of its range; there is no such scene; the output cannot be
+    /// written.
+    pub(crate) fn new(args: RenderArgs) -> Result<Self, Error> {
+        let RenderArgs { scene, output, picture, work, reading, json, quiet } = args;
+        // The values that are not given are the defaults, which no given one can make illegal.
+        settings_for(&picture, Settings::default()).validate().map_err(usage)?;
+        let source = Source::find(scene.as_deref())?;
+        let destination = Destination::find(output.as_deref(), &source)?;
+        if json && destination == Destination::Stdout {
+            return Err(Error::usage("--json and the picture cannot both go to standard output"));
+        }
+        destination.check()?;
+        Ok(Self {
+            source,
+            load: load_options(reading),
+            compile: compile_options(&work),
+            threads: work.threads.map_or_else(all_cores, |threads| threads as usize),
+            tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
+            tone: Tone { exposure: picture.exposure },
+            destination,
+            json,
+            quiet,
+            picture,
+        })
+    }
+
+    /// What to render of `scene`.
+    ///
+    /// # Errors
+    /// The scene's settings or its camera are at fault, or else the flags do not fit the scene.
+    pub(crate) fn shot(&self, scene: &Scene) -> Result<Shot, Error> {
+        let settings = settings_for(&self.picture, scene.settings);
+        if let Err(error) = settings.validate() {
+            return Err(match scene.settings.validate() {
+                Ok(()) => usage(error),
+                Err(_) => self.scene_fault(error),
+            });
+        }
+        let camera = *self.camera(scene)?;
+        camera.project(settings.width, settings.height).map_err(|error| self.scene_fault(error))?;
+        let region = self.picture.region;
+        if let Some(region) = region.filter(|region| !fits(region, &settings)) {
+            let Settings { width, height, .. } = settings;
+            return Err(usage(RenderError::Region { region, width, height }));
+        }
+        let shot = Shot { camera, settings, region };
+        let tiles = shot.tiles(self.tile_size);
+        if tiles > MAX_TILES {
+            return Err(Error::usage(format!(
+                "--tile-size {} makes {tiles} tiles of this picture, more than {MAX_TILES}",
+                self.tile_size
+            )));
+        }
+        Ok(shot)
+    }
+
+    fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Camera, Error> {
+        let name = self.picture.camera.as_deref();
+        scene.camera_named(name).ok_or_else(|| {
+            let message = format!("the scene has no camera `{}`", name.unwrap_or_default());
+            let names = scene.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
+            let hint = match names.as_slice() {
+                [] => "leave out --camera: the scene has one camera, without a name".into(),
+                names => format!("its cameras are {}", names.join(", ")),
+            };
+            Error::usage_with_hint(message, hint)
+        })
+    }
+
+    fn scene_fault(&self, error: impl std::error::Error) -> Error {
+        Error::Scene(self.source.diagnostic(error).into())
+    }
+}
+
+impl Shot {
+    /// Columns and rows of the picture.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        match self.region {
+            Some(region) => (region.width, region.height),
+            None => (self.settings.width, self.settings.height),
+        }
+    }
+
+    /// Tiles of the picture.
+    fn tiles(&self, tile_size: u32) -> u64 {
+        let (width, height) = self.size();
+        u64::from(width.div_ceil(tile_size)) * u64::from(height.div_ceil(tile_size))
+    }
+}
+
+/// The most tiles of a picture: each costs a few hundred bytes beside its pixels.
+const MAX_TILES: u64 = 1 << 22;
+
+fn usage(error: impl std::error::Error) -> Error {
+    Error::usage(error.to_string())
+}
+
+/// The scene's settings, with what the flags say in their place.
+fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
+    Settings {
+        width: flags.width.unwrap_or(scene.width),
+        height: flags.height.unwrap_or(scene.height),
+        samples: flags.samples.unwrap_or(scene.samples),
+        depth: flags.depth.unwrap_or(scene.depth),
+        ao: AmbientOcclusion {
+            samples: flags.ao.unwrap_or(scene.ao.samples),
+            distance: flags.ao_distance.unwrap_or(scene.ao.distance),
+        },
+    }
+}
+
+fn load_options(reading: ReadingArgs) -> LoadOptions {
+    LoadOptions {
+        limits: Limits::default(),
+        allow_outside: reading.access.allow_outside,
+        overrides: reading.overrides,
+    }
+}
+
+fn compile_options(work: &WorkArgs) -> CompileOptions {
+    CompileOptions { accelerator: work.accel, kd: KdSettings { leaf: work.kd_leaf, depth: work.kd_depth } }
+}
+
+/// One thread a core; one where the system does not tell.
+pub(crate) fn all_cores() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZero::get)
+}
+
+fn fits(region: &Region, settings: &Settings) -> bool {
+    let inside = |start: u32, length: u32, end: u32| {
+        length > 0 && start.checked_add(length).is_some_and(|stop| stop <= end)
+    };
+    inside(region.x, region.width, settings.width) && inside(region.y, region.height, settings.height)
+}
