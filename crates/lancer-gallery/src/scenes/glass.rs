@@ -42,7 +42,7 @@ impl BuiltinScene for Glass {
         scene.cameras = vec![("tumbler".into(), tumbler), ("prism".into(), prism)];
         scene.ambient = Rgb::new(0.62, 0.64, 0.68);
         scene.background = Rgb::from_srgb_hex(0xdfe9f2);
-        scene.settings = Settings { samples: 3, depth: 7, ..Settings::default() };
+        scene.settings = Settings { samples: 3, depth: 6, ..Settings::default() };
         scene.lights = vec![
             // Shadows are hard and black even under glass: from high up they stay small.
             lamp("key", DVec3::new(-1.5, 14.0, 3.0), DVec3::ZERO, Rgb::new(0.42, 0.39, 0.33)),

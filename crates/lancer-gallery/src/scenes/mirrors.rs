@@ -6,8 +6,9 @@ use crate::parts::{
 };
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
-use lancer_core::geometry::{DVec3, Transform};
+use lancer_core::geometry::{DVec3, Transform, portable};
 use lancer_core::scene::{MaterialId, Node, Scene, Settings, Shape};
+use std::f64::consts::PI;
 
 /// A corridor without an end.
 pub(crate) struct Mirrors;
@@ -88,24 +89,22 @@ fn add_curved_mirrors(scene: &mut Scene) {
     let gold = scene.add_material(mirror("gold", Rgb::new(0.95, 0.70, 0.32)));
     scene.add(Node::shape("ball", Shape::Sphere).with_material(chrome).with_transform(at(-2.1, 1.0, -0.5)));
 
-    // A bowl is the inside of a lathed wall: out along the bottom, up, and back on the inner side.
-    let bowl = [
-        [0.0, 0.0],
-        [0.45, 0.0],
-        [0.85, 0.2],
-        [1.1, 0.55],
-        [1.2, 0.95],
-        [1.12, 0.95],
-        [1.0, 0.6],
-        [0.75, 0.3],
-        [0.4, 0.12],
-        [0.0, 0.1],
-    ];
     scene.add(
-        Node::mesh("bowl", lathe(&bowl, 96, Finish::Polished))
+        Node::mesh("bowl", lathe(&bowl_profile(), 96, Finish::Polished))
             .with_material(gold)
-            .with_transform(turn(DVec3::X, 35.0).then(stretch(0.6, 0.6, 0.6)).then(at(2.05, 0.3, 0.3))),
+            .with_transform(turn(DVec3::X, 35.0).then(stretch(0.7, 0.7, 0.7)).then(at(1.95, 0.68, 0.3))),
     );
+}
+
+/// Half of a hollow ball: up along the outside, then down along the inside.
+fn bowl_profile() -> Vec<[f64; 2]> {
+    let arc = |radius: f64| {
+        (0..=32).map(move |i| {
+            let (sin, cos) = portable::sin_cos(PI / 2.0 * f64::from(i) / 32.0);
+            [radius * sin, -radius * cos]
+        })
+    };
+    arc(1.0).chain(arc(0.94).rev()).collect()
 }
 
 /// What the mirrors look at: rings on a stick.
