@@ -3,6 +3,7 @@
 //! Each is a file in `scenes/` that implements [`BuiltinScene`], and a line in [`SCENES`]. To add your own, write
 //! such a file and such a line; `docs/add-a-scene.md` shows how.
 
+mod parts;
 mod scenes;
 
 use lancer_core::scene::Scene;
@@ -25,6 +26,13 @@ pub const DEFAULT: &str = "whitted";
 /// All built-in scenes, in the order in which they are listed.
 pub const SCENES: &[&dyn BuiltinScene] = &[
     &scenes::whitted::Whitted,
+    &scenes::primitives::Primitives,
+    &scenes::highlights::Highlights,
+    &scenes::shadows::Shadows,
+    &scenes::mirrors::Mirrors,
+    &scenes::glass::Glass,
+    &scenes::occlusion::Occlusion,
+    &scenes::supersampling::Supersampling,
     &scenes::teapot::Teapot,
     &scenes::sphereflake::Sphereflake,
     &scenes::mirror_room::MirrorRoom,
