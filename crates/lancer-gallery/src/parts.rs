@@ -11,6 +11,11 @@ pub(crate) fn at(x: f64, y: f64, z: f64) -> Transform {
     Transform::translate(DVec3::new(x, y, z))
 }
 
+/// Scales by the same factor every way.
+pub(crate) fn scale(factor: f64) -> Transform {
+    Transform::scale(DVec3::splat(factor))
+}
+
 /// Stretches by one factor an axis.
 pub(crate) fn stretch(x: f64, y: f64, z: f64) -> Transform {
     Transform::scale(DVec3::new(x, y, z))
