@@ -26,8 +26,6 @@ pub const DEFAULT: &str = "whitted";
 /// All built-in scenes, in the order in which they are listed.
 pub const SCENES: &[&dyn BuiltinScene] = &[
     &scenes::whitted::Whitted,
-    &scenes::teapot::Teapot,
-    &scenes::sphereflake::Sphereflake,
     &scenes::primitives::Primitives,
     &scenes::highlights::Highlights,
     &scenes::shadows::Shadows,
@@ -35,6 +33,10 @@ pub const SCENES: &[&dyn BuiltinScene] = &[
     &scenes::glass::Glass,
     &scenes::occlusion::Occlusion,
     &scenes::supersampling::Supersampling,
+    &scenes::teapot::Teapot,
+    &scenes::sphereflake::Sphereflake,
+    &scenes::mirror_room::MirrorRoom,
+    &scenes::ten_thousand::TenThousand,
 ];
 
 /// The scene of a name.

@@ -53,11 +53,11 @@ impl Resolver {
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, LoadError> {
         let failed =
             |error: std::io::Error| LoadError::new(path, format!("cannot be read: {}", reason(&error)));
-        let file = File::open(path).map_err(failed)?;
-        let length = file.metadata().map_err(failed)?;
-        if !length.is_file() {
+        // Asked before it is opened: to open a pipe would wait for whoever writes to it.
+        if !std::fs::metadata(path).map_err(failed)?.is_file() {
             return Err(LoadError::new(path, "is not a file"));
         }
+        let file = File::open(path).map_err(failed)?;
         let mut bytes = Vec::new();
         let limit = self.limits.file_bytes;
         file.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;

@@ -84,7 +84,7 @@ impl Job {
         let camera = *self.camera(scene)?;
         camera.project(settings.width, settings.height).map_err(|error| self.scene_fault(error))?;
         let region = self.picture.region;
-        if let Some(region) = region.filter(|region| !fits(region, &settings)) {
+        if let Some(region) = region.filter(|region| !region.fits(settings.width, settings.height)) {
             let Settings { width, height, .. } = settings;
             return Err(usage(RenderError::Region { region, width, height }));
         }
@@ -169,11 +169,4 @@ fn compile_options(work: &WorkArgs) -> CompileOptions {
 /// One thread a core; one where the system does not tell.
 pub(crate) fn all_cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
-}
-
-fn fits(region: &Region, settings: &Settings) -> bool {
-    let inside = |start: u32, length: u32, end: u32| {
-        length > 0 && start.checked_add(length).is_some_and(|stop| stop <= end)
-    };
-    inside(region.x, region.width, settings.width) && inside(region.y, region.height, settings.height)
 }

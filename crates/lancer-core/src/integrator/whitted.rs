@@ -12,7 +12,7 @@ use crate::geometry::{DVec3, Ray};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Hit, Intersection, Media, World};
+use crate::world::{Hit, Intersection, Media, Touching, World};
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -102,6 +102,8 @@ struct Arrival<'a> {
     id: RayId,
     pending: &'a PendingRay,
     at: Intersection,
+    /// Other dielectrics whose surfaces coincide with this one.
+    touching: Vec<Touching>,
     point: ShadingPoint<'a>,
 }
 
@@ -135,7 +137,7 @@ impl<L: Listener> Walk<'_, '_, L> {
             self.listener.background(world.background());
             return world.background();
         };
-        let at = seen_surface(world, &pending.ray, &hit);
+        let (at, touching) = seen_surface(world, &pending.ray, &hit);
         let material = world.material(at.material);
         let point = ShadingPoint {
             position: at.point,
@@ -145,7 +147,7 @@ impl<L: Listener> Walk<'_, '_, L> {
             material,
         };
         self.listener.surface(&at, point.color);
-        let arrival = Arrival { id, pending, at, point };
+        let arrival = Arrival { id, pending, at, touching, point };
         let radiance = self.ambient(&arrival) + self.lights(&arrival);
         if pending.depth > 0 {
             self.continue_paths(&arrival);
@@ -252,15 +254,19 @@ impl<L: Listener> Walk<'_, '_, L> {
     }
 }
 
-/// The surface that counts at a hit: an opaque one that touches a transparent one there is what is seen.
-fn seen_surface(world: &World, ray: &Ray, hit: &Hit) -> Intersection {
+/// The surface that counts at a hit, and the dielectrics that touch it there. An opaque surface that touches a
+/// transparent one, as where glass stands on a table, is what is seen.
+fn seen_surface(world: &World, ray: &Ray, hit: &Hit) -> (Intersection, Vec<Touching>) {
     let at = world.intersection(ray, hit);
     if world.material(at.material).transmit.is_black() {
-        return at;
+        return (at, Vec::new());
     }
-    match world.opaque_behind(&at, ray.direction) {
-        Some(hit) => world.intersection(ray, &hit),
-        None => at,
+    let touching = world.touching(&at, ray.direction);
+    match touching.iter().find(|other| !other.is_transmissive) {
+        Some(&Touching { object, primitive, .. }) => {
+            (world.intersection(ray, &Hit { t: hit.t, object, primitive }), Vec::new())
+        }
+        None => (at, touching),
     }
 }
 
@@ -283,7 +289,7 @@ impl Bend {
             let (ior_before, ior_after) = (media.ior(world), arrival.point.material.ior);
             return Self { ior_before, ior_after, media_after: media.clone(), refracted: None, cosine };
         }
-        let interface = media.interface(world, at, direction);
+        let interface = media.interface(world, at, &arrival.touching);
         let (ior_before, ior_after) = (interface.ior_before, interface.ior_after);
         Self {
             ior_before,

@@ -36,7 +36,7 @@ pub struct Tile {
 
 /// Who watches a render.
 pub struct Control<'a> {
-    /// Stops it; looked at before every pixel.
+    /// Stops it; looked at before every subpixel.
     pub cancel: CancelToken,
     /// Called with each tile when it is done, from any thread, and with the rays that it took.
     pub on_tile: &'a (dyn Fn(&Tile, &crate::integrator::RayCounts) + Sync),

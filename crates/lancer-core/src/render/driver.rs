@@ -10,7 +10,7 @@ use crate::scene::{Settings, SettingsError};
 use crate::world::{Media, World};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// A part of the image, in pixels from its top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,16 @@ pub struct Region {
     pub width: u32,
     /// Rows, at least 1.
     pub height: u32,
+}
+
+impl Region {
+    /// Whether it holds a pixel and lies in an image of this size.
+    pub fn fits(&self, width: u32, height: u32) -> bool {
+        let inside = |start: u32, length: u32, end: u32| {
+            length > 0 && start.checked_add(length).is_some_and(|stop| stop <= end)
+        };
+        inside(self.x, self.width, width) && inside(self.y, self.height, height)
+    }
 }
 
 /// A finished picture.
@@ -87,7 +97,7 @@ pub fn render(
     settings.validate()?;
     let (width, height) = (settings.width, settings.height);
     let region = region.unwrap_or(Region { x: 0, y: 0, width, height });
-    if !fits(&region, width, height) {
+    if !region.fits(width, height) {
         return Err(RenderError::Region { region, width, height });
     }
     let job = Job {
@@ -97,29 +107,25 @@ pub fn render(
         samples: settings.samples,
         region,
         control,
+        film: Mutex::new(Image::black(region.width, region.height)),
         panic: OnceLock::new(),
     };
-    let tiles = tiles_of(&region, control.tile_size.max(1))
+    // Counts are whole numbers, so their sum does not depend on the order of work.
+    let rays = tiles_of(&region, control.tile_size.max(1))
         .into_par_iter()
         .map(|area| job.tile(area))
-        .collect::<Option<Vec<_>>>();
-    let Some(tiles) = tiles else {
-        return Err(job.panic.into_inner().unwrap_or(RenderError::Cancelled));
-    };
-    let mut image = Image::black(region.width, region.height);
-    let mut rays = RayCounts::default();
-    for (tile, counts) in tiles {
-        image.put(tile.x, tile.y, tile.width, &tile.pixels);
-        rays += counts;
+        .try_reduce(RayCounts::default, |mut a, b| {
+            a += b;
+            Some(a)
+        });
+    match (rays, job.panic.into_inner()) {
+        (_, Some(panic)) => Err(panic),
+        (None, None) => Err(RenderError::Cancelled),
+        // A poisoned film would mean a panic while a tile was put into it, and there is none.
+        (Some(rays), None) => {
+            Ok(Render { image: job.film.into_inner().unwrap_or_else(PoisonError::into_inner), rays })
+        }
     }
-    Ok(Render { image, rays })
-}
-
-fn fits(region: &Region, width: u32, height: u32) -> bool {
-    let inside = |start: u32, length: u32, end: u32| {
-        length > 0 && start.checked_add(length).is_some_and(|stop| stop <= end)
-    };
-    inside(region.x, region.width, width) && inside(region.y, region.height, height)
 }
 
 /// The tiles of a region in reading order, in coordinates of the region.
@@ -139,26 +145,25 @@ struct Job<'a> {
     samples: u32,
     region: Region,
     control: &'a Control<'a>,
+    film: Mutex<Image>,
     /// The first panic; it stops all threads.
     panic: OnceLock<RenderError>,
 }
 
 impl Job<'_> {
-    /// A tile and the rays that it took; none where the render was cancelled or a thread panicked.
-    fn tile(&self, area: Region) -> Option<(Tile, RayCounts)> {
+    /// Traces a tile into the film. Returns the rays that it took; none where the render was cancelled or a
+    /// thread panicked.
+    fn tile(&self, area: Region) -> Option<RayCounts> {
         let mut counts = RayCounts::default();
         let mut scratch = Scratch::default();
         let mut pixels = Vec::with_capacity(area.width as usize * area.height as usize);
         for y in area.y..area.y + area.height {
             for x in area.x..area.x + area.width {
-                if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
-                    return None;
-                }
                 let (x, y) = (x + self.region.x, y + self.region.y);
                 // After a panic the scratch and the counts are dropped with the tile.
                 let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut scratch, &mut counts)));
                 match pixel {
-                    Ok(pixel) => pixels.push(pixel),
+                    Ok(pixel) => pixels.push(pixel?),
                     Err(panic) => {
                         let message = panic_message(panic.as_ref()).to_owned();
                         // A second thread's panic is the same news.
@@ -169,19 +174,26 @@ impl Job<'_> {
             }
         }
         let tile = Tile { x: area.x, y: area.y, width: area.width, height: area.height, pixels };
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.put(tile.x, tile.y, tile.width, &tile.pixels);
+        drop(film);
         (self.control.on_tile)(&tile, &counts);
-        Some((tile, counts))
+        Some(counts)
     }
 
-    /// The mean of the pixel's subpixels.
-    fn pixel(&self, x: u32, y: u32, scratch: &mut Scratch, counts: &mut RayCounts) -> [f32; 3] {
+    /// The mean of the pixel's subpixels; none where the render is to stop.
+    fn pixel(&self, x: u32, y: u32, scratch: &mut Scratch, counts: &mut RayCounts) -> Option<[f32; 3]> {
         let mut sum = Rgb::BLACK;
         for (subpixel, (dx, dy)) in subpixel_centers(self.samples).enumerate() {
+            if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
+                return None;
+            }
             let ray = self.projection.ray(f64::from(x) + dx, f64::from(y) + dy);
             let key = Key::camera(x, y, subpixel as u32);
             sum += self.integrator.radiance(ray, &self.media, key, scratch, counts, &mut Silent);
         }
-        (sum * (1.0 / f64::from(self.samples * self.samples))).to_array().map(|channel| channel as f32)
+        let mean = sum * (1.0 / f64::from(self.samples * self.samples));
+        Some(mean.to_array().map(|channel| channel as f32))
     }
 }
 

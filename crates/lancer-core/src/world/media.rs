@@ -25,6 +25,16 @@ pub(crate) struct Interface {
     pub(crate) media_after: Media,
 }
 
+/// A surface that coincides with another, within rounding, as a ray meets the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Touching {
+    pub(crate) object: ObjectId,
+    pub(crate) primitive: u32,
+    /// Whether the ray leaves the object there.
+    pub(crate) from_inside: bool,
+    pub(crate) is_transmissive: bool,
+}
+
 impl Media {
     /// How many objects within one another are told apart; a deeper one is taken for the one around it.
     pub const MAX_NESTED: usize = 12;
@@ -41,10 +51,10 @@ impl Media {
         for _ in 0..MAX_CROSSINGS {
             let Some(hit) = world.intersect(&ray) else { break };
             let intersection = world.intersection(&ray, &hit);
-            for (object, from_inside) in [(hit.object, intersection.from_inside)]
-                .into_iter()
-                .chain(world.also_crossed(&intersection, OUTWARD))
-            {
+            let here = (hit.object, intersection.from_inside);
+            let touching = world.touching(&intersection, OUTWARD);
+            let others = touching.iter().map(|other| (other.object, other.from_inside));
+            for (object, from_inside) in std::iter::once(here).chain(others) {
                 if met.iter().all(|&(other, _)| other != object) {
                     met.push((object, from_inside));
                 }
@@ -66,18 +76,16 @@ impl Media {
         self.objects.last().map_or(1.0, |&object| world.material(world.object(object).material).ior)
     }
 
-    /// What happens at a transmissive surface to a ray that arrives in `direction` through these media.
-    pub(crate) fn interface(&self, world: &World, at: &Intersection, direction: DVec3) -> Interface {
+    /// What happens to a ray that arrives through these media at a transmissive surface, which touches others.
+    pub(crate) fn interface(&self, world: &World, at: &Intersection, touching: &[Touching]) -> Interface {
         let mut before = self.clone();
         if at.from_inside && !before.objects.contains(&at.object) {
             before.enter(at.object);
         }
         let mut after = before.clone();
         after.cross(at.object, at.from_inside);
-        for (object, from_inside) in world.also_crossed(at, direction) {
-            if world.is_transmissive(world.object(object)) {
-                after.cross(object, from_inside);
-            }
+        for other in touching.iter().filter(|other| other.is_transmissive) {
+            after.cross(other.object, other.from_inside);
         }
         Interface { ior_before: before.ior(world), ior_after: after.ior(world), media_after: after }
     }
@@ -109,41 +117,28 @@ impl World {
         !self.material(object.material).transmit.is_black()
     }
 
-    /// An opaque surface that coincides, within rounding, with the transmissive one at `at`, as where glass stands
-    /// on a table: what a ray in `direction` really sees.
-    pub(crate) fn opaque_behind(&self, at: &Intersection, direction: DVec3) -> Option<Hit> {
+    /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in
+    /// `direction` meets them. In the order of their objects' ids; almost always none.
+    pub(crate) fn touching(&self, at: &Intersection, direction: DVec3) -> Vec<Touching> {
         let segment = across(at, direction);
-        let mut found: Option<Hit> = None;
+        let mut touching: Vec<Touching> = Vec::new();
         self.visit_objects(&segment, |id, object| {
-            if id != at.object && !self.is_transmissive(object) {
-                let ray = object.placement.ray_to_object(&segment);
-                if let Some(local) = object.geometry.intersect(&ray, &self.meshes, self.accelerator) {
-                    let hit = Hit { t: at.t, object: id, primitive: local.primitive };
-                    found = found.filter(|other| other.object < id).or(Some(hit));
-                }
-            }
-            segment.t_max
-        });
-        found
-    }
-
-    /// The other objects whose surfaces coincide, within rounding, with the one at `at`, and whether a ray in
-    /// `direction` leaves them there. In the order of their ids.
-    fn also_crossed(&self, at: &Intersection, direction: DVec3) -> Vec<(ObjectId, bool)> {
-        let segment = across(at, direction);
-        let mut crossed = Vec::new();
-        self.visit_objects(&segment, |id, object| {
-            if id != at.object && crossed.iter().all(|&(other, _)| other != id) {
+            if id != at.object && touching.iter().all(|other| other.object != id) {
                 let ray = object.placement.ray_to_object(&segment);
                 if let Some(local) = object.geometry.intersect(&ray, &self.meshes, self.accelerator) {
                     let hit = Hit { t: local.t, object: id, primitive: local.primitive };
-                    crossed.push((id, self.intersection(&segment, &hit).from_inside));
+                    touching.push(Touching {
+                        object: id,
+                        primitive: local.primitive,
+                        from_inside: self.intersection(&segment, &hit).from_inside,
+                        is_transmissive: self.is_transmissive(object),
+                    });
                 }
             }
             segment.t_max
         });
-        crossed.sort_unstable();
-        crossed
+        touching.sort_unstable_by_key(|other| other.object);
+        touching
     }
 }
 

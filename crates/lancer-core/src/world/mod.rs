@@ -24,6 +24,7 @@ mod tests;
 pub use compile::{CompileError, CompileOptions};
 pub use intersection::Intersection;
 pub use media::Media;
+pub(crate) use media::Touching;
 
 use crate::accel::{Accelerator, KdTree};
 use crate::color::Rgb;

@@ -1,8 +1,8 @@
 //! A sky that pales toward the horizon.
 //!
 //! The illumination model has no surface that shines, but a surface whose only coefficient is k_a = 1 / L_a shows
-//! its own colour wherever nothing is within reach of ambient occlusion. A ball with such a surface, around
-//! everything, is a sky.
+//! its own colour. A ball with such a surface, around
+//! everything, is a sky. It is for scenes without ambient occlusion, whose noise would show in it.
 
 use lancer_core::Rgb;
 use lancer_core::color::linear_to_srgb;

@@ -52,7 +52,7 @@ const LEVELS: [u32; 6] = [0xf0b848, 0xe88a4a, 0xd86060, 0xb468a0, 0x7f8fd8, 0x9f
 const SHRINK: f64 = 1.0 / 3.0;
 
 /// The height in degrees at which the upper three children sit. With six at the equator they are nine of the
-/// twelve balls that fit around a thirteenth of their size; the other three would be in the parent's parent.
+/// twelve balls that fit around a thirteenth of their size; the other three would lie toward the parent's own parent.
 const UPPER: f64 = 54.735_610_317_245_35;
 
 fn flake(scene: &mut Scene) {

@@ -31,7 +31,7 @@ impl BuiltinScene for Whitted {
             ..Camera::default()
         };
         let low =
-            Camera { eye: DVec3::new(-5.5, 0.9, 6.5), target: DVec3::new(0.0, 1.7, 0.0), ..scene.camera };
+            Camera { eye: DVec3::new(-6.0, 1.0, 8.0), target: DVec3::new(0.3, 1.95, 0.0), ..scene.camera };
         scene.cameras.push(("low".into(), low));
         scene.ambient = Rgb::new(0.30, 0.34, 0.42);
         Sky { zenith: Rgb::from_srgb_hex(0x1b4f9c), horizon: Rgb::from_srgb_hex(0xa4d0f4), clearness: 5.0 }

@@ -5,7 +5,6 @@ mod tessellate;
 #[cfg(test)]
 mod tests;
 
-use super::sky::Sky;
 use crate::BuiltinScene;
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
@@ -37,14 +36,13 @@ impl BuiltinScene for Teapot {
             fov: 34.0,
             ..Camera::default()
         };
-        scene.cameras.push(("spout".into(), Camera { eye: DVec3::new(7.5, 2.6, 3.2), ..scene.camera }));
+        scene.cameras.push(("spout".into(), Camera { eye: DVec3::new(9.2, 3.0, 4.2), ..scene.camera }));
         scene.ambient = Rgb::new(0.36, 0.38, 0.42);
-        Sky { zenith: Rgb::from_srgb_hex(0x3d4148), horizon: Rgb::from_srgb_hex(0xd3c6b4), clearness: 6.0 }
-            .put_over(&mut scene, 100.0);
+        scene.background = Rgb::from_srgb_hex(0xcdbfad);
         scene.settings = Settings {
             samples: 3,
             depth: 3,
-            ao: AmbientOcclusion { samples: 16, distance: 3.0 },
+            ao: AmbientOcclusion { samples: 32, distance: 3.0 },
             ..Settings::default()
         };
         scene.add_light(DVec3::new(-5.0, 9.0, 6.0), Rgb::new(1.0, 0.93, 0.8) * 330.0);

@@ -1,8 +1,8 @@
 //! The teapot's 32 bicubic Bézier patches.
 //!
 //! Lengths are Newell's own, z points up, and the spout toward +x. Rim, body and bottom are one profile and the lid
-//! another, each turned about z in four quarters; handle and spout are symmetric in y. So written, a fifth of his
-//! 306 control points says it all.
+//! another, each turned about z in four quarters; handle and spout are symmetric in y. So written, 34
+//! rows of numbers say all that his 306 control points do.
 //!
 //! Source: the data that Martin Newell drew at the University of Utah in 1975, with the bottom that was added
 //! later; Crow, "The origins of the teapot" (IEEE Computer Graphics and Applications 7(1), 1987), tells the story.
