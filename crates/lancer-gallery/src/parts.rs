@@ -11,6 +11,11 @@ pub(crate) fn at(x: f64, y: f64, z: f64) -> Transform {
     Transform::translate(DVec3::new(x, y, z))
 }
 
+/// Scales by the same factor every way.
+pub(crate) fn scale(factor: f64) -> Transform {
+    Transform::scale(DVec3::splat(factor))
+}
+
 /// Stretches by one factor an axis.
 pub(crate) fn stretch(x: f64, y: f64, z: f64) -> Transform {
     Transform::scale(DVec3::new(x, y, z))
@@ -161,4 +166,41 @@ pub(crate) fn ring_profile(radius: f64, thickness: f64, points: u32) -> Vec<[f64
             [radius + thickness * cos, thickness * sin]
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sixth of the sum of the corners' determinants, by the divergence theorem; positive where facets face
+    /// outward.
+    fn volume(mesh: &Mesh) -> f64 {
+        let triangles = 0..mesh.triangle_count() as u32;
+        triangles.map(|i| mesh.corners(i)).map(|[a, b, c]| a.dot(b.cross(c))).sum::<f64>() / 6.0
+    }
+
+    #[test]
+    fn a_turned_ring_is_closed_faces_outward_and_holds_what_a_torus_holds() {
+        let mesh = lathe(&ring_profile(2.0, 0.5, 128), 256, Finish::Polished);
+        let torus = 2.0 * PI * PI * 2.0 * 0.5 * 0.5;
+        assert!((volume(&mesh) / torus - 1.0).abs() < 1e-3, "{} is not {torus}", volume(&mesh));
+    }
+
+    #[test]
+    fn vertex_normals_lie_on_the_side_of_the_facets() {
+        let mesh = lathe(&ring_profile(2.0, 0.5, 8), 8, Finish::Polished);
+        for triangle in 0..mesh.triangle_count() as u32 {
+            let [a, b, c] = mesh.corners(triangle);
+            let facet = (b - a).cross(c - a);
+            let normals = mesh.corner_normals(triangle).unwrap();
+            assert!(normals.iter().all(|normal| normal.dot(facet) > 0.0), "triangle {triangle}");
+        }
+    }
+
+    #[test]
+    fn a_lamp_gives_at_its_target_what_it_says() {
+        let lamp = lamp("lamp", DVec3::new(0.0, 3.0, 4.0), DVec3::ZERO, Rgb::WHITE);
+        let irradiance = lamp.intensity * (1.0 / (PI * 25.0));
+        assert!((irradiance.r - 1.0).abs() < 1e-15);
+    }
 }

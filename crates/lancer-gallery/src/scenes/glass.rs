@@ -1,7 +1,7 @@
 //! Refraction in nested dielectrics: water in glass, air in glass, and total internal reflection in a prism.
 
 use crate::BuiltinScene;
-use crate::parts::{Finish, at, checker, clear, lacquer, lamp, lathe, matte, standing, stretch, turn};
+use crate::parts::{Finish, at, checker, clear, lacquer, lamp, lathe, matte, scale, standing, stretch, turn};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Transform};
@@ -38,7 +38,7 @@ impl BuiltinScene for Glass {
         let tumbler =
             Camera { eye: DVec3::new(-2.0, 2.4, 4.6), target: DVec3::new(-2.3, 1.2, 0.0), ..scene.camera };
         let prism =
-            Camera { eye: DVec3::new(1.2, 1.6, 6.0), target: DVec3::new(0.6, 0.7, 1.5), ..scene.camera };
+            Camera { eye: DVec3::new(1.2, 1.6, 6.0), target: DVec3::new(1.2, 0.75, 1.6), ..scene.camera };
         scene.cameras = vec![("tumbler".into(), tumbler), ("prism".into(), prism)];
         scene.ambient = Rgb::new(0.62, 0.64, 0.68);
         scene.background = Rgb::from_srgb_hex(0xdfe9f2);
@@ -56,7 +56,7 @@ impl BuiltinScene for Glass {
             air: scene.add_material(clear("air", 1.0, Rgb::WHITE)),
         };
         add_tumbler(&mut scene, &clear);
-        let ball = stretch(0.85, 0.85, 0.85).then(at(-0.25, 0.85, 0.1));
+        let ball = scale(0.85).then(at(-0.25, 0.85, 0.1));
         scene.add(Node::shape("ball", Shape::Sphere).with_material(clear.glass).with_transform(ball));
         add_block(&mut scene, &clear);
         add_prism(&mut scene, &clear);
@@ -115,7 +115,7 @@ fn add_block(scene: &mut Scene, clear: &Clear) {
         Node::shape("cube", Shape::Cube).with_material(clear.glass).with_transform(standing(0.8, 1.6, 0.8));
     let mut parts = vec![scene.insert(cube)];
     for (i, (radius, center)) in bubbles.into_iter().enumerate() {
-        let place = stretch(radius, radius, radius).then(Transform::translate(center));
+        let place = scale(radius).then(Transform::translate(center));
         let bubble =
             Node::shape(format!("bubble {i}"), Shape::Sphere).with_material(clear.air).with_transform(place);
         parts.push(scene.insert(bubble));

@@ -2,7 +2,7 @@
 
 use crate::BuiltinScene;
 use crate::parts::{
-    Finish, at, checker, lacquer, lamp, lathe, matte, mirror, ring_profile, standing, stretch, turn,
+    Finish, at, checker, lacquer, lamp, lathe, matte, mirror, ring_profile, scale, standing, stretch, turn,
 };
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
@@ -31,7 +31,7 @@ impl BuiltinScene for Mirrors {
             ..Camera::default()
         };
         let side =
-            Camera { eye: DVec3::new(9.0, 4.0, 2.0), target: DVec3::new(0.0, 1.2, 0.0), ..scene.camera };
+            Camera { eye: DVec3::new(11.0, 5.0, 5.0), target: DVec3::new(0.0, 1.5, 0.8), ..scene.camera };
         scene.cameras = vec![("side".into(), side)];
         scene.ambient = Rgb::new(0.3, 0.32, 0.38);
         scene.background = Rgb::from_srgb_hex(0x58789f);
@@ -92,7 +92,7 @@ fn add_curved_mirrors(scene: &mut Scene) {
     scene.add(
         Node::mesh("bowl", lathe(&bowl_profile(), 96, Finish::Polished))
             .with_material(gold)
-            .with_transform(turn(DVec3::X, 35.0).then(stretch(0.7, 0.7, 0.7)).then(at(1.95, 0.68, 0.3))),
+            .with_transform(turn(DVec3::X, 35.0).then(scale(0.7)).then(at(1.95, 0.68, 0.3))),
     );
 }
 

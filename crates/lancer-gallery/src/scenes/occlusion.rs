@@ -1,7 +1,7 @@
 //! Ambient occlusion and nothing else: white clay under a white sky, without a lamp.
 
 use crate::BuiltinScene;
-use crate::parts::{Finish, at, lathe, matte, ring_profile, standing, stretch, turn};
+use crate::parts::{Finish, at, lathe, matte, ring_profile, scale, standing, stretch, turn};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Transform};
@@ -98,7 +98,7 @@ fn add_lattice(scene: &mut Scene) -> NodeId {
 }
 
 fn add_still_life(scene: &mut Scene) -> NodeId {
-    let ball = |radius, x, z| stretch(radius, radius, radius).then(at(x, radius, z));
+    let ball = |radius, x, z| scale(radius).then(at(x, radius, z));
     let ring = Shape::Mesh(lathe(&ring_profile(0.5, 0.2, 32), 64, Finish::Polished).into());
     let parts = [
         part(scene, "ball on the ledge", Shape::Sphere, ball(0.5, -2.6, -2.6).then(at(0.0, 1.1, 0.0))),

@@ -2,7 +2,8 @@
 
 use crate::BuiltinScene;
 use crate::parts::{
-    Finish, at, checker, lacquer, lamp, lathe, matte, melt_horizon, ring_profile, standing, stretch, turn,
+    Finish, at, checker, lacquer, lamp, lathe, matte, melt_horizon, ring_profile, scale, standing, stretch,
+    turn,
 };
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
@@ -29,7 +30,7 @@ impl BuiltinScene for Primitives {
             fov: 36.0,
             ..Camera::default()
         };
-        let above = Camera { eye: DVec3::new(-4.0, 15.0, 7.0), target: DVec3::Y * 0.5, ..scene.camera };
+        let above = Camera { eye: DVec3::new(-4.5, 17.5, 8.0), target: DVec3::Y * 0.5, ..scene.camera };
         scene.cameras = vec![("above".into(), above)];
         scene.ambient = Rgb::new(0.36, 0.46, 0.60);
         scene.settings = Settings {
@@ -60,13 +61,10 @@ fn add_floor(scene: &mut Scene) {
 fn add_horns(scene: &mut Scene) {
     let ivory = scene.add_material(lacquer("ivory", Rgb::from_srgb_hex(0xf2e3c2)));
     let bronze = scene.add_material(lacquer("bronze", Rgb::from_srgb_hex(0x9c5a2c)));
-    let step = stretch(0.93, 0.93, 0.93)
-        .then(turn(DVec3::Z, -15.0))
-        .then(turn(DVec3::Y, 9.0))
-        .then(at(0.16, 0.52, 0.0));
+    let step = scale(0.93).then(turn(DVec3::Z, -15.0)).then(turn(DVec3::Y, 9.0)).then(at(0.16, 0.52, 0.0));
     let horn = add_horn(scene, step, [ivory, bronze], 40);
 
-    let stand = turn(DVec3::Z, 30.0).then(stretch(1.1, 1.1, 1.1)).then(at(1.5, 0.6, -2.2));
+    let stand = turn(DVec3::Z, 30.0).then(scale(1.1)).then(at(1.5, 0.6, -2.2));
     let mirrored = stand.then(stretch(-1.0, 1.0, 1.0));
     scene.add(Node::group("right horn", [horn]).with_transform(stand));
     scene.add(Node::group("left horn", [horn]).with_transform(mirrored));

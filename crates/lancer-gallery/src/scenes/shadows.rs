@@ -1,7 +1,7 @@
 //! Red, green and blue light from three sides: a shadow of one is the colour of the other two.
 
 use crate::BuiltinScene;
-use crate::parts::{at, lacquer, lamp, matte, standing, stretch, turn};
+use crate::parts::{at, lacquer, lamp, matte, scale, standing, stretch, turn};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::DVec3;
@@ -53,7 +53,7 @@ impl BuiltinScene for Shadows {
         scene.add(
             Node::shape("ball", Shape::Sphere)
                 .with_material(stone)
-                .with_transform(stretch(0.9, 0.9, 0.9).then(at(0.0, 0.9, 0.0))),
+                .with_transform(scale(0.9).then(at(0.0, 0.9, 0.0))),
         );
         add_colonnade(&mut scene, stone);
         add_lattice(&mut scene, stone);
