@@ -163,7 +163,7 @@ fn one_pixel_makes_an_image_and_absurd_sizes_are_refused_before_anything_is_allo
     }
 }
 
-/// Promise: no light leaks, whether the room is one shape or six slabs that touch.
+/// No light leaks, whether the room is one shape or six slabs that touch.
 #[test]
 fn no_light_enters_a_closed_room() {
     let slab = |axis: usize, sign: f64| {

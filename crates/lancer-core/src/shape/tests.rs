@@ -120,7 +120,7 @@ fn texture_coordinates_follow_the_documented_directions() {
     close(plane::surface(&above, &plane::intersect(&above).unwrap()).uv, DVec2::new(3.0, 2.0));
 }
 
-/// Promise 1 for the implicit shapes: 0 self-hits, at any size and distance.
+/// 0 self-hits, at any size and distance.
 #[test]
 fn a_ray_that_leaves_a_convex_shape_never_meets_it_again() {
     let mut random = Random::new(5);

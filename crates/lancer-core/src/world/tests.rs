@@ -69,7 +69,7 @@ fn trees_and_brute_force_report_the_same_hit() {
     }
 }
 
-/// Promise 2: 0 misses, at the origin and far away.
+/// A million rays in all: 0 misses, at the origin and far away.
 #[test]
 fn no_ray_escapes_from_a_closed_mesh() {
     for (size, distance) in [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 1e4), (1e-3, 1e4), (1e3, 1e4)] {
@@ -90,13 +90,13 @@ fn no_ray_escapes_from_a_closed_mesh() {
             from_inside(b * 0.25 + c * 0.75);
         }
         let mut directions = Random::new(4);
-        for _ in 0..50_000 {
+        for _ in 0..170_000 {
             from_inside(directions.direction());
         }
     }
 }
 
-/// Promise 1 for meshes: a ray that leaves a convex mesh outward never meets it.
+/// A million rays in all: what leaves a convex mesh outward never meets it.
 #[test]
 fn a_ray_that_leaves_a_convex_mesh_never_meets_it_again() {
     for size in [1e-3, 1.0, 1e3] {
@@ -104,7 +104,7 @@ fn a_ray_that_leaves_a_convex_mesh_never_meets_it_again() {
             let mut random = Random::new(6);
             let transform = random.transform(size, distance);
             let world = compile(&mesh_scene(ball(16, 32), transform));
-            for _ in 0..10_000 {
+            for _ in 0..85_000 {
                 let origin = transform.point(random.direction() * 3.0);
                 let ray = Ray::new(origin, transform.point(random.point(0.8)) - origin);
                 let Some(hit) = world.intersect(&ray) else { continue };

@@ -33,7 +33,7 @@ fn build(mesh: &Mesh, settings: KdSettings) -> KdTree {
     tree
 }
 
-/// 20 meshes, 5,000 rays each: promise 3, with every hit compared and not only the nearest.
+/// 20 meshes, 5,000 rays each, with every hit compared and not only the nearest.
 #[test]
 fn the_tree_hides_no_hit_that_brute_force_finds() {
     for seed in 0..20 {
@@ -146,7 +146,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     assert_eq!(one, shape(8));
 }
 
-/// Promise 11: depth bounded, memory linear. Time is measured by the benchmarks, not asserted here.
+/// Depth bounded, memory linear. Time is measured by the benchmarks, not asserted here.
 #[test]
 fn hundreds_of_thousands_of_awkward_triangles_build_in_linear_memory() {
     type Corners = [DVec3; 3];
