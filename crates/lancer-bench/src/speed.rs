@@ -17,7 +17,7 @@ use lancer_core::shade::reflect;
 use lancer_core::world::{CompileOptions, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
@@ -200,12 +200,12 @@ fn median(values: &[f64]) -> f64 {
 }
 
 /// Writes all figures with what is needed to understand them later.
-fn keep(directory: &std::path::Path, records: &[Value]) -> Result<PathBuf, Failure> {
+fn keep(directory: &Path, records: &[Value]) -> Result<PathBuf, Failure> {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
     let record = json!({
         "unix_time": seconds,
         "machine": processor_name(),
-        "command": std::env::args().collect::<Vec<_>>().join(" "),
+        "command": command_line(),
         "version": env!("CARGO_PKG_VERSION"),
         "rows": records,
     });
@@ -213,6 +213,15 @@ fn keep(directory: &std::path::Path, records: &[Value]) -> Result<PathBuf, Failu
     let path = directory.join(format!("speed-{seconds}.json"));
     std::fs::write(&path, serde_json::to_string_pretty(&record)? + "\n")?;
     Ok(path)
+}
+
+/// The command as typed, without the directories of this machine.
+fn command_line() -> String {
+    let name = |word: String| match Path::new(&word).file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => word,
+    };
+    std::env::args().map(name).collect::<Vec<_>>().join(" ")
 }
 
 /// The processor's name where the system tells it.

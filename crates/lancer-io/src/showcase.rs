@@ -28,20 +28,20 @@ const LIGHT_DISTANCE: f64 = 4.0;
 struct Lamp {
     name: &'static str,
     from: DVec3,
-    radiance: f64,
+    radiance: Rgb,
 }
 
 /// Three lights as photographers set them. Key, fill and ambient light together give a plaster that faces the
 /// key light about 0.8, which leaves room for the near side and for the highlight. All stand high: one near
-/// the ground would burn a spot into it.
+/// the ground would burn a spot into it. A warm key and cool others tell lit sides from shaded ones by hue too.
 const LAMPS: [Lamp; 3] = [
-    Lamp { name: "key", from: DVec3::new(-0.7, 0.9, 0.8), radiance: 0.62 },
-    Lamp { name: "fill", from: DVec3::new(1.0, 0.6, 0.6), radiance: 0.18 },
-    Lamp { name: "rim", from: DVec3::new(0.5, 1.8, -0.9), radiance: 0.35 },
+    Lamp { name: "key", from: DVec3::new(-0.7, 0.9, 0.8), radiance: Rgb::new(0.66, 0.61, 0.53) },
+    Lamp { name: "fill", from: DVec3::new(1.0, 0.6, 0.6), radiance: Rgb::new(0.15, 0.18, 0.23) },
+    Lamp { name: "rim", from: DVec3::new(0.5, 1.8, -0.9), radiance: Rgb::new(0.32, 0.35, 0.40) },
 ];
 
 /// L_a: fills what no light reaches, so that ambient occlusion shows, and does not flatten the rest.
-const AMBIENT: f64 = 0.25;
+const AMBIENT: Rgb = Rgb::new(0.22, 0.25, 0.30);
 
 /// How far geometry occludes ambient light, in diagonals: creases and the contact with the ground darken,
 /// not whole sides.
@@ -61,7 +61,7 @@ pub fn scene_of_model(model: Model) -> Scene {
     let mut scene = Scene::new(model.name.clone());
     scene.settings = settings(diagonal);
     scene.camera = framing_camera(bounds, diagonal, scene.settings);
-    scene.ambient = Rgb::grey(AMBIENT);
+    scene.ambient = AMBIENT;
     scene.background = Rgb::from_srgb_hex(0xc3_cdd9);
     scene.lights = lights(bounds.center(), diagonal, &scene.camera);
 
@@ -92,7 +92,7 @@ fn plaster() -> Material {
 }
 
 fn ground_material() -> Material {
-    Material { color: Rgb::grey(0.55).into(), ..Material::named("ground") }
+    Material { color: Rgb::new(0.52, 0.54, 0.58).into(), ..Material::named("ground") }
 }
 
 /// The camera nearest to the model from which all corners of its box are in the picture.
@@ -133,7 +133,7 @@ fn lights(center: DVec3, diagonal: f64, camera: &Camera) -> Vec<Light> {
             name: lamp.name.to_owned(),
             position: center + direction * distance,
             // The light at distance r is L / (pi r^2).
-            intensity: Rgb::grey(lamp.radiance * PI * distance * distance),
+            intensity: lamp.radiance * (PI * distance * distance),
         }
     };
     LAMPS.iter().map(light).collect()

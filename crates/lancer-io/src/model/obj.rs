@@ -14,7 +14,7 @@
 use super::mtl::MaterialLibrary;
 use super::polygons::{Corner, NONE, Polygons};
 use super::report::{PassedOver, Report};
-use super::text::{Cursor, Source, Word, decode};
+use super::text::{Cursor, Reference, Source, Word, decode};
 use super::{Model, ModelPart, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
@@ -52,12 +52,6 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
         origin: meshes.origin,
         warnings,
     })
-}
-
-/// A name in the file, and where.
-pub(super) struct Reference {
-    pub(super) name: String,
-    pub(super) offset: usize,
 }
 
 /// What an OBJ file holds.

@@ -161,6 +161,12 @@ fn is_separator(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b'\x0b' | b'\x0c')
 }
 
+/// A name in the file, and where.
+pub(super) struct Reference {
+    pub(super) name: String,
+    pub(super) offset: usize,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,8 +11,7 @@ mod parse;
 
 use self::convert::material;
 use self::parse::Definition;
-use super::obj::Reference;
-use super::text::Source;
+use super::text::{Reference, Source};
 use crate::diagnostics::Diagnostic;
 use crate::image::load_texture;
 use crate::resolver::Resolver;
