@@ -4,14 +4,15 @@
 //! lampshades.
 
 use crate::BuiltinScene;
+use crate::parts::{Finish, at, clear, lathe, matte, mirror};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
-use lancer_core::geometry::{DVec2, DVec3, Transform, portable};
-use lancer_core::mesh::{Mesh, MeshData};
+use lancer_core::geometry::{DVec2, DVec3, Transform};
+use lancer_core::mesh::Mesh;
 use lancer_core::scene::{
     AmbientOcclusion, Light, Material, MaterialId, Node, Scene, Settings, Shape, Texture,
 };
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Mirrors, glass and lamps.
 pub(crate) struct MirrorRoom;
@@ -67,12 +68,12 @@ fn build_room(scene: &mut Scene) {
         "floor tiles",
         Texture::Checker { even: Rgb::from_srgb_hex(0xd9cbb0), odd: Rgb::from_srgb_hex(0x3a2c24), size: 0.5 },
     ));
-    let plaster = scene.add_material(matte("plaster", 0xe6ddcc));
-    let paper = scene.add_material(matte("wallpaper", 0x2f6156));
-    let panel = scene.add_material(matte("panelling", 0xcfc0a0));
+    let plaster = scene.add_material(matte("plaster", Rgb::from_srgb_hex(0xe6ddcc)));
+    let paper = scene.add_material(matte("wallpaper", Rgb::from_srgb_hex(0x2f6156)));
+    let panel = scene.add_material(matte("panelling", Rgb::from_srgb_hex(0xcfc0a0)));
 
     scene.add(Node::shape("floor", Shape::Plane).with_material(floor));
-    let overhead = Transform::rotate(DVec3::X, 180.0).then(move_by(0.0, HEIGHT, 0.0));
+    let overhead = Transform::rotate(DVec3::X, 180.0).then(at(0.0, HEIGHT, 0.0));
     scene.add(Node::shape("ceiling", Shape::Plane).with_material(plaster).with_transform(overhead));
 
     // A wall faces +z.
@@ -91,7 +92,7 @@ fn build_room(scene: &mut Scene) {
         ("front wall", 180.0, HALF_LENGTH),
         ("right wall", 270.0, HALF_WIDTH),
     ] {
-        let place = move_by(0.0, 0.0, -distance).then(Transform::rotate(DVec3::Y, degrees));
+        let place = at(0.0, 0.0, -distance).then(Transform::rotate(DVec3::Y, degrees));
         scene.add(Node::group(name, parts).with_transform(place));
     }
 }
@@ -100,7 +101,7 @@ fn build_room(scene: &mut Scene) {
 fn hang_mirrors(scene: &mut Scene) {
     let silver = scene.add_material(mirror("silvered glass", Rgb::new(0.93, 0.95, 0.93)));
     let gilt = scene.add_material(metal("gilt", 0xc8963c));
-    let ebony = scene.add_material(matte("ebony", 0x2a1c16));
+    let ebony = scene.add_material(matte("ebony", Rgb::from_srgb_hex(0x2a1c16)));
 
     let (width, height) = (1.15, 0.72);
     let mut parts = vec![scene.insert(block("pane", silver, [width, height, 0.01], [0.0; 3]))];
@@ -116,7 +117,7 @@ fn hang_mirrors(scene: &mut Scene) {
             parts.extend([across, along].map(|node| scene.insert(node)));
         }
     }
-    let hung = move_by(0.0, 1.68, -HALF_LENGTH + 0.01);
+    let hung = at(0.0, 1.68, -HALF_LENGTH + 0.01);
     scene.add(Node::group("back mirror", parts.clone()).with_transform(hung));
     let opposite = hung.then(Transform::rotate(DVec3::Y, 180.0));
     scene.add(Node::group("front mirror", parts).with_transform(opposite));
@@ -129,7 +130,7 @@ fn light_lamps(scene: &mut Scene) {
         // what the bulb, so near, would add by the diffuse one is left out.
         ambient: Rgb::new(6.0, 5.0, 3.4),
         diffuse: Rgb::grey(0.01),
-        ..matte("parchment", 0xf6dfb4)
+        ..matte("parchment", Rgb::from_srgb_hex(0xf6dfb4))
     });
     let brass = scene.add_material(metal("brass", 0xb08d4a));
     let shade = [
@@ -151,8 +152,8 @@ fn light_lamps(scene: &mut Scene) {
         scene.lights.push(Light { name: name.into(), position, intensity: warm * (PI * at_distance_1) });
     }
     // The lid keeps the bulb from burning a spot into the ceiling.
-    let lid = Transform::scale(DVec3::new(0.34, 0.005, 0.34)).then(move_by(0.0, 0.11, 0.0));
-    let cord = Transform::scale(DVec3::new(0.012, 0.5, 0.012)).then(move_by(0.0, 0.6, 0.0));
+    let lid = Transform::scale(DVec3::new(0.34, 0.005, 0.34)).then(at(0.0, 0.11, 0.0));
+    let cord = Transform::scale(DVec3::new(0.012, 0.5, 0.012)).then(at(0.0, 0.6, 0.0));
     for (name, place) in [("lid", lid), ("cord", cord)] {
         let place = place.then(Transform::translate(PENDANT));
         let node = Node::shape(name, Shape::Cylinder { capped: true }).with_material(brass);
@@ -167,7 +168,7 @@ fn light_lamps(scene: &mut Scene) {
 }
 
 fn rim(name: &str, material: MaterialId, y: f64) -> Node {
-    let thin = Transform::scale(DVec3::new(1.02, 0.05, 1.02)).then(move_by(0.0, y, 0.0));
+    let thin = Transform::scale(DVec3::new(1.02, 0.05, 1.02)).then(at(0.0, y, 0.0));
     Node::shape(name, Shape::Cylinder { capped: false }).with_material(material).with_transform(thin)
 }
 
@@ -176,24 +177,22 @@ const TABLE_HEIGHT: f64 = 0.76;
 /// The table and what stands on it, in a space whose y = 0 is the table's top.
 fn lay_table(scene: &mut Scene) {
     let walnut = scene.add_material(polished("walnut", Rgb::from_srgb_hex(0x5a331e)));
-    let crystal = scene.add_material(glass("crystal", Rgb::WHITE));
-    let green = scene.add_material(glass("green glass", Rgb::new(0.55, 0.90, 0.68)));
+    let crystal = scene.add_material(clear("crystal", 1.5, Rgb::WHITE));
+    let green = scene.add_material(clear("green glass", 1.5, Rgb::new(0.55, 0.90, 0.68)));
     let silver = scene.add_material(mirror("silver", Rgb::new(0.95, 0.90, 0.82)));
 
-    let top = Transform::scale(DVec3::new(0.8, 0.025, 0.8)).then(move_by(0.0, -0.025, 0.0));
-    let floor = move_by(0.0, -TABLE_HEIGHT, 0.0);
+    let top = Transform::scale(DVec3::new(0.8, 0.025, 0.8)).then(at(0.0, -0.025, 0.0));
+    let floor = at(0.0, -TABLE_HEIGHT, 0.0);
     let table = [
         Node::shape("top", Shape::Cylinder { capped: true }).with_material(walnut).with_transform(top),
         Node::mesh("leg", turned(&LEG)).with_material(walnut).with_transform(floor),
-        Node::mesh("vase", turned(&VASE)).with_material(green).with_transform(move_by(-0.28, 0.0, -0.1)),
-        Node::mesh("goblet", turned(&GOBLET))
-            .with_material(crystal)
-            .with_transform(move_by(0.36, 0.0, -0.18)),
+        Node::mesh("vase", turned(&VASE)).with_material(green).with_transform(at(-0.28, 0.0, -0.1)),
+        Node::mesh("goblet", turned(&GOBLET)).with_material(crystal).with_transform(at(0.36, 0.0, -0.18)),
         ball("glass ball", crystal, 0.14, [0.14, 0.24]),
         ball("silver ball", silver, 0.17, [0.04, -0.36]),
     ];
     let table = table.map(|part| scene.insert(part));
-    scene.add(Node::group("table", table).with_transform(move_by(-0.1, TABLE_HEIGHT, -0.6)));
+    scene.add(Node::group("table", table).with_transform(at(-0.1, TABLE_HEIGHT, -0.6)));
 }
 
 /// The sections of what is turned, as (radius, height). They run upward along the outside.
@@ -250,30 +249,14 @@ const BETWEEN: u32 = 8;
 
 /// The surface that the smooth curve through `section` sweeps about the y axis, on which both its ends lie.
 fn turned(section: &[[f64; 2]]) -> Mesh {
-    let curve = smooth(section);
-    let rings = curve.len() as u32;
-    let mut data = MeshData::default();
-    for step in 0..AROUND {
-        let (sin, cos) = portable::sin_cos(TAU * f64::from(step) / f64::from(AROUND));
-        let swept = |radius: f64, y: f64| [radius * sin, y, radius * cos].map(|x| x as f32);
-        for (ring, (point, tangent)) in (0..).zip(&curve) {
-            data.positions.push(swept(point.x, point.y));
-            data.normals.push(swept(tangent.y, -tangent.x));
-            if ring + 1 < rings {
-                let here = step * rings + ring;
-                let next = (step + 1) % AROUND * rings + ring;
-                data.indices.extend([[here, next, next + 1], [here, next + 1, here + 1]]);
-            }
-        }
-    }
-    Mesh::new(data).expect("a section of two points or more makes a mesh")
+    lathe(&smooth(section), AROUND, Finish::Polished)
 }
 
-/// Points of a curve through `section`, and its tangents there.
+/// Points of a curve through `section`.
 ///
 /// Source: Catmull, Rom, "A class of local interpolating splines" (1974). Beyond each end stands the mirror
 /// image of the point before it, so that the curve meets the axis at a right angle.
-fn smooth(section: &[[f64; 2]]) -> Vec<(DVec2, DVec2)> {
+fn smooth(section: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mirrored = |[radius, y]: [f64; 2]| [-radius, y];
     let mut points = vec![mirrored(section[1])];
     points.extend(section);
@@ -287,16 +270,11 @@ fn smooth(section: &[[f64; 2]]) -> Vec<(DVec2, DVec2)> {
         let cube = (p[1] - p[2]) * 1.5 + (p[3] - p[0]) * 0.5;
         curve.extend((0..BETWEEN).map(|i| {
             let t = f64::from(i) / f64::from(BETWEEN);
-            (p[1] + (linear + (square + cube * t) * t) * t, linear + (square * 2.0 + cube * (3.0 * t)) * t)
+            (p[1] + (linear + (square + cube * t) * t) * t).to_array()
         }));
     }
-    let [.., before, last, after] = points[..] else { unreachable!("two points and their mirror images") };
-    curve.push((last, after - before));
+    curve.extend(section.last());
     curve
-}
-
-fn move_by(x: f64, y: f64, z: f64) -> Transform {
-    Transform::translate(DVec3::new(x, y, z))
 }
 
 /// A box of half the edges `half` around `center`.
@@ -308,12 +286,8 @@ fn block(name: &str, material: MaterialId, half: [f64; 3], center: [f64; 3]) -> 
 
 /// A ball that lies on y = 0 at (x, z).
 fn ball(name: &str, material: MaterialId, radius: f64, [x, z]: [f64; 2]) -> Node {
-    let place = Transform::scale(DVec3::splat(radius)).then(move_by(x, radius, z));
+    let place = Transform::scale(DVec3::splat(radius)).then(at(x, radius, z));
     Node::shape(name, Shape::Sphere).with_material(material).with_transform(place)
-}
-
-fn matte(name: &str, rrggbb: u32) -> Material {
-    Material { color: Rgb::from_srgb_hex(rrggbb).into(), ..Material::named(name) }
 }
 
 /// A colour under clear lacquer.
@@ -335,32 +309,6 @@ fn metal(name: &str, rrggbb: u32) -> Material {
         specular: Rgb::grey(0.3),
         metallic: Rgb::WHITE,
         shininess: 30.0,
-        ..matte(name, rrggbb)
-    }
-}
-
-fn mirror(name: &str, tint: Rgb) -> Material {
-    Material {
-        color: tint.into(),
-        ambient: Rgb::BLACK,
-        diffuse: Rgb::BLACK,
-        specular: Rgb::grey(0.01),
-        metallic: Rgb::WHITE,
-        shininess: 600.0,
-        reflect: tint,
-        ..Material::named(name)
-    }
-}
-
-fn glass(name: &str, tint: Rgb) -> Material {
-    Material {
-        ambient: Rgb::BLACK,
-        diffuse: Rgb::BLACK,
-        specular: Rgb::grey(0.01),
-        shininess: 800.0,
-        reflect: Rgb::WHITE,
-        transmit: tint,
-        fresnel: true,
-        ..Material::named(name)
+        ..matte(name, Rgb::from_srgb_hex(rrggbb))
     }
 }

@@ -5,13 +5,14 @@
 //! out of two thousand.
 
 use crate::BuiltinScene;
+use crate::parts::{at, lamp};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Transform, portable};
 use lancer_core::mesh::{Mesh, MeshData};
 use lancer_core::sampling::{Key, Stream};
-use lancer_core::scene::{Light, Material, MaterialId, Node, NodeId, Scene, Settings, Shape};
-use std::f64::consts::{PI, TAU};
+use lancer_core::scene::{Material, MaterialId, Node, NodeId, Scene, Settings, Shape};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Shared subtrees, ten thousand times.
@@ -43,8 +44,8 @@ impl BuiltinScene for TenThousand {
         scene.background = Rgb::from_srgb_hex(0xa9cdec);
         scene.ambient = scene.background;
         scene.lights = vec![
-            distant("sun", DVec3::new(-560.0, 480.0, 600.0), Rgb::new(1.75, 1.3, 0.82)),
-            distant("sky", DVec3::new(300.0, 900.0, -200.0), Rgb::new(0.10, 0.15, 0.24)),
+            lamp("sun", DVec3::new(-560.0, 480.0, 600.0), DVec3::ZERO, Rgb::new(1.75, 1.3, 0.82)),
+            lamp("sky", DVec3::new(300.0, 900.0, -200.0), DVec3::ZERO, Rgb::new(0.10, 0.15, 0.24)),
         ];
         scene.settings = Settings { samples: 3, depth: 2, ..Settings::default() };
 
@@ -318,17 +319,11 @@ fn plant(scene: &mut Scene, strips: &[Strip]) {
         let width = height * between(&mut stream, 0.85, 1.15);
         let place = Transform::scale(DVec3::new(width, height, width))
             .then(Transform::rotate(DVec3::Y, between(&mut stream, 0.0, 360.0)))
-            .then(Transform::translate(DVec3::new(x, y, z)));
+            .then(at(x, y, z));
         let name = format!("{} {planted}", KINDS[kind].name);
         scene.add(Node::group(name, [species.tree]).with_material(leaves).with_transform(place));
         planted += 1;
     }
-}
-
-/// A light so far away that it shines about evenly, by the irradiance that it gives in the middle of the
-/// valley.
-fn distant(name: &str, position: DVec3, irradiance: Rgb) -> Light {
-    Light { name: name.into(), position, intensity: irradiance * (PI * position.length_squared()) }
 }
 
 fn sin(radians: f64) -> f64 {
