@@ -68,6 +68,20 @@ fn every_kind_of_png_becomes_rgb() {
 }
 
 #[test]
+fn jpeg_is_read_to_within_its_losses() {
+    let mut bytes = Vec::new();
+    let pixels = [[200_u8, 60, 30]; 16 * 16].concat();
+    let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 95);
+    image::ImageEncoder::write_image(encoder, &pixels, 16, 16, image::ExtendedColorType::Rgb8).unwrap();
+    let (width, height, color) = load(TempDir::new().unwrap().path(), "wood.jpg", &bytes).unwrap();
+    assert_eq!((width, height), (16, 16));
+    let expected = Rgb::from_srgb_hex(0xc8_3c1e);
+    for (found, expected) in color.to_array().into_iter().zip(expected.to_array()) {
+        assert!((found - expected).abs() < 0.02, "{found} is not {expected}");
+    }
+}
+
+#[test]
 fn tga_is_known_by_its_name_and_others_by_their_content() {
     let directory = TempDir::new().unwrap();
     let mut tga = vec![0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0];
