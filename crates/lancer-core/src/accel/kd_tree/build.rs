@@ -9,8 +9,8 @@ use super::node::{MAX_INDEX, Node};
 use super::split::{Reference, Split, best_split, leaf_cost};
 use super::{BuildError, KdSettings, KdTree};
 
-/// The most references a tree holds for each primitive, on average. Past it nodes become leaves: memory stays
-/// linear in the input however the primitives overlap. Ordinary meshes need 2 to 3.
+/// The most references a tree holds for each primitive, on average; one less bounds its splits. Past that nodes
+/// become leaves: memory stays linear in the input however the primitives lie. Ordinary meshes need 2 to 3 of each.
 pub(super) const REFERENCES_PER_PRIMITIVE: usize = 6;
 
 /// Nodes above this size build their children in parallel.
@@ -60,7 +60,7 @@ struct Cell {
     references: Vec<Reference>,
     bounds: Aabb,
     depth: u32,
-    /// How many references splitting may add below here.
+    /// How many splits and references may be added below here.
     spare: usize,
     /// How many splits in a row have cost more than a leaf.
     setbacks: u32,
@@ -138,7 +138,8 @@ impl<P: Primitives> Builder<'_, P> {
             return None;
         }
         let [below, above] = self.partition(&cell.references, &cell.bounds, &split);
-        let spare = (cell.spare + count).checked_sub(below.len() + above.len())?;
+        // The split itself is paid for too: a cut through empty space adds no reference, but it adds two nodes.
+        let spare = (cell.spare + count).checked_sub(below.len() + above.len() + 1)?;
         let share = spare as u128 * below.len() as u128 / (below.len() + above.len()).max(1) as u128;
         let spare_below = share as usize;
         let [bounds_below, bounds_above] = cell.bounds.split(split.axis, split.position);

@@ -55,14 +55,13 @@ impl KdTree {
     /// The deepest tree: it bounds the stack of a traversal.
     pub const MAX_DEPTH: u32 = 64;
 
-    /// The most primitives: references to them, at most 6 each, must fit the
-    /// 32 bits of a leaf.
-    pub const MAX_PRIMITIVES: usize = 1 << 29;
+    /// The most primitives. Ten nodes for each, two for each of five splits, must be told apart by 30 bits, and six
+    /// references by 32.
+    pub const MAX_PRIMITIVES: usize = 100_000_000;
 
     /// Builds the tree, on the threads of the current rayon pool; it does not depend on their number.
     ///
-    /// Takes O(n log n) time. Memory is linear: at most 6 references a
-    /// primitive, and twice as many nodes as leaves.
+    /// Takes O(n log n) time. Memory is linear: at most 6 references and 10 nodes a primitive.
     ///
     /// # Errors
     /// [`BuildError::TooManyPrimitives`].
