@@ -28,7 +28,7 @@ pub struct RayCounts {
     pub refraction: u64,
     /// Camera rays whose tree of reflections was cut at [`Whitted::MAX_RAYS`].
     pub truncated: u64,
-    /// Camera rays whose radiance was not finite and was replaced by black.
+    /// Camera rays whose radiance no pixel can hold, which was replaced by black.
     pub replaced: u64,
 }
 

@@ -508,11 +508,14 @@ fn the_terms_that_a_listener_is_told_add_up_to_the_radiance() {
 }
 
 #[test]
-fn a_radiance_that_is_not_finite_is_replaced_and_counted() {
-    let mut scene = floor();
-    scene.ambient = Rgb::BLACK;
-    scene.add_light(DVec3::Y * 1e-150, Rgb::grey(1e300));
-    let (seen, counts) = listen(&world(&scene), &settings(0, 0, 1.0), DOWN, &mut Silent);
-    assert_eq!(seen, Rgb::BLACK);
-    assert_eq!(counts.replaced, 1);
+fn a_radiance_that_no_pixel_can_hold_is_replaced_and_counted() {
+    // Infinite even in f64, and finite there but not in the f32 of a pixel.
+    for (height, intensity) in [(1e-150, 1e300), (1.0, 1e100)] {
+        let mut scene = floor();
+        scene.ambient = Rgb::BLACK;
+        scene.add_light(DVec3::Y * height, Rgb::grey(intensity));
+        let (seen, counts) = listen(&world(&scene), &settings(0, 0, 1.0), DOWN, &mut Silent);
+        assert_eq!(seen, Rgb::BLACK);
+        assert_eq!(counts.replaced, 1);
+    }
 }

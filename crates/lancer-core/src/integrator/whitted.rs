@@ -58,8 +58,8 @@ impl<'w> Whitted<'w> {
 
     /// The radiance that arrives along a camera ray.
     ///
-    /// `ray.direction` has length 1, and `media` are those around its origin. Finite, or replaced by black and
-    /// counted.
+    /// `ray.direction` has length 1, and `media` are those around its origin. Finite also as `f32`, or replaced by
+    /// black and counted.
     pub fn radiance<L: Listener>(
         &self,
         ray: Ray,
@@ -79,7 +79,8 @@ impl<'w> Whitted<'w> {
             media: media.clone(),
         };
         let radiance = walk.run(first);
-        if radiance.is_finite() {
+        // In the precision of a pixel, which holds less than this one does.
+        if radiance.map(|channel| f64::from(channel as f32)).is_finite() {
             radiance
         } else {
             counts.replaced += 1;
