@@ -1,9 +1,11 @@
 //! Structures that find what a ray may meet. They know no material, camera or pixel.
 
 mod aabb;
+pub mod bvh;
 pub mod kd_tree;
 
 pub use aabb::Aabb;
+pub use bvh::{Bvh, Quality};
 pub use kd_tree::{BuildError, KdSettings, KdTree};
 
 /// Which structure finds hits. It changes the time that a picture takes, and nothing in it.

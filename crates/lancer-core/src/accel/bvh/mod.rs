@@ -1,0 +1,105 @@
+//! A hierarchy of boxes, eight to a node.
+//!
+//! It is built over the boxes of primitives and knows nothing else of them. A binary tree is grown from the root
+//! by the surface area heuristic (`grow`), then its nodes are gathered into nodes of eight children and leaves so
+//! that the expected cost is least (`collapse`).
+//!
+//! Source: Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007), for the bins; Ylitie,
+//! Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs" (2017), section 3.1,
+//! for the collapse.
+
+mod collapse;
+mod cost;
+mod extent;
+mod grow;
+mod node;
+mod split;
+#[cfg(test)]
+mod tests;
+mod validate;
+
+pub use node::{Child, MAX_LEAF, WIDTH, WideNode};
+pub use validate::Defect;
+
+use super::Aabb;
+
+/// How much time a build may take for how good a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// For trees that many rays go through.
+    #[default]
+    High,
+    /// For trees that are soon replaced.
+    Fast,
+}
+
+/// Why no hierarchy was built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BuildError {
+    /// More primitives than a leaf can name.
+    #[error("{count} primitives are more than a hierarchy of boxes can hold ({})", Bvh::MAX_PRIMITIVES)]
+    TooManyPrimitives {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// A hierarchy of boxes over primitives that are named by their index.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// Depth first; the first is the root.
+    nodes: Vec<WideNode>,
+    /// The primitives of the leaves, leaf after leaf: each once.
+    order: Vec<u32>,
+    bounds: Aabb,
+    depth: u32,
+}
+
+impl Bvh {
+    /// The deepest hierarchy: no node is more steps away from the root.
+    pub const MAX_DEPTH: u32 = 64;
+
+    /// The most primitives. Their places in the order must be told apart by 28 bits.
+    pub const MAX_PRIMITIVES: usize = 100_000_000;
+
+    /// Builds the hierarchy, on the threads of the current rayon pool; it does not depend on their number.
+    ///
+    /// Takes O(n log n) time and linear memory. Boxes that are not finite cost quality and nothing else.
+    ///
+    /// # Errors
+    /// [`BuildError::TooManyPrimitives`].
+    pub fn build(boxes: &[Aabb], quality: Quality) -> Result<Self, BuildError> {
+        let count = boxes.len();
+        if count > Self::MAX_PRIMITIVES {
+            return Err(BuildError::TooManyPrimitives { count });
+        }
+        let _ = quality;
+        let grown = grow::grow(boxes);
+        Ok(collapse::collapse(grown))
+    }
+
+    /// The nodes. The first is the root; it is there even where there is no primitive.
+    pub fn nodes(&self) -> &[WideNode] {
+        &self.nodes
+    }
+
+    /// The primitives, in the order of the leaves.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The box around all primitives.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Steps from the root to the node furthest from it.
+    pub fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.order[..])
+    }
+}
