@@ -1,137 +1,189 @@
-//! From a binary tree to nodes of eight: the choice of least expected cost, found bottom up.
-//!
-//! `costs[j - 1]` of a node is the least cost of all that is below it where it may take up to j of the places in
-//! its parent. One place holds a leaf or a node; more are shared out between the two children.
+//! From a binary tree to nodes of eight: the choice of least expected cost, found while the tree grew.
 //!
 //! Source: Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs"
 //! (2017), section 3.1.
 
 use super::Bvh;
-use super::cost::{NODE_COST, leaf_cost};
-use super::grow::{Binary, Grown};
-use super::node::{Child, MAX_LEAF, WIDTH, WideNode};
+use super::binary::Binary;
+use super::grow::Grown;
+use super::node::{Child, WIDTH, WideNode};
 use crate::accel::Aabb;
 use arrayvec::ArrayVec;
-
-type Costs = [f32; WIDTH - 1];
-
-/// How a node's places are shared out: three bits for each number of places from 2 to 8, how many of them the
-/// child below takes. 0 where one place less does as well. The highest bit is set where one place holds a leaf.
-#[derive(Clone, Copy, Debug, Default)]
-struct Choice(u32);
-
-impl Choice {
-    const LEAF: u32 = 1 << 31;
-
-    fn below(self, places: usize) -> usize {
-        (self.0 >> (3 * (places - 2)) & 7) as usize
-    }
-
-    fn is_leaf(self) -> bool {
-        self.0 & Self::LEAF != 0
-    }
-}
+use rayon::prelude::*;
 
 pub(super) fn collapse(grown: Grown) -> Bvh {
-    let Grown { nodes, order } = grown;
-    let mut choices = vec![Choice::default(); nodes.len()];
-    let bounds = nodes.first().map_or(Aabb { min: [0.0; 3], max: [0.0; 3] }, |root| root.bounds);
-    let mut bvh = Bvh { nodes: vec![WideNode::EMPTY], order, bounds, depth: 0 };
-    if let Some(root) = nodes.first() {
-        choose(&nodes, 0, &mut choices);
-        let tree = Binaries { nodes: &nodes, choices: &choices };
-        if choices[0].is_leaf() {
-            bvh.nodes[0].set(0, &root.bounds, Child::leaf(0, root.count));
-        } else {
-            bvh.nodes.clear();
-            let mut places = 0;
-            tree.emit(0, 0, &mut bvh, &mut places);
-        }
+    let Grown { pieces, order } = grown;
+    if pieces.is_empty() {
+        let bounds = Aabb { min: [0.0; 3], max: [0.0; 3] };
+        return Bvh { nodes: vec![WideNode::EMPTY], order, bounds, depth: 0 };
     }
-    bvh
+    let forest = Forest { pieces: &pieces };
+    let root = forest.resolve(Place { piece: 0, node: 0 });
+    let Binary { bounds, choice, .. } = *forest.node(root);
+    let mut wide = Wide::default();
+    if choice.is_leaf() {
+        wide.nodes.push(WideNode::EMPTY);
+        wide.nodes[0].set(0, &bounds, Child::leaf(0, choice.count()));
+    } else if root.piece == 0 {
+        let mut stumps = Vec::new();
+        forest.emit_crown(root, 0, &mut wide, &mut stumps);
+        let subtrees = stumps.par_iter().map(|stump| forest.emit_subtree(stump)).collect::<Vec<_>>();
+        wide.append(&stumps, &subtrees);
+    } else {
+        forest.emit(root, 0, &mut wide);
+    }
+    Bvh { nodes: wide.nodes, order, bounds, depth: wide.depth }
 }
 
-fn choose(nodes: &[Binary], index: usize, choices: &mut [Choice]) -> Costs {
-    let node = &nodes[index];
-    let area = node.bounds.half_area();
-    let count = node.count as usize;
-    let as_leaf = if count <= MAX_LEAF { area * leaf_cost(count) } else { f32::INFINITY };
-    if node.above == 0 {
-        choices[index] = Choice(Choice::LEAF);
-        return [as_leaf; WIDTH - 1];
-    }
-    let below = choose(nodes, index + 1, choices);
-    let above = choose(nodes, node.above as usize, choices);
-    let mut choice = 0;
-    let share = |places: usize| {
-        let mut best = (below[0] + above[places - 2], 1_u32);
-        for k in 2..places {
-            let cost = below[k - 1] + above[places - k - 1];
-            best = if cost < best.0 { (cost, k as u32) } else { best };
-        }
-        best
-    };
-    let (cost, k) = share(WIDTH);
-    choice |= k << (3 * (WIDTH - 2));
-    let as_node = cost + area * NODE_COST;
-    let mut costs = [as_node; WIDTH - 1];
-    if as_leaf <= as_node {
-        costs[0] = as_leaf;
-        choice |= Choice::LEAF;
-    }
-    for places in 2..WIDTH {
-        costs[places - 1] = costs[places - 2];
-        let (cost, k) = share(places);
-        if cost < costs[places - 1] {
-            costs[places - 1] = cost;
-            choice |= k << (3 * (places - 2));
-        }
-    }
-    choices[index] = Choice(choice);
-    costs
+/// A node of a piece.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    piece: u32,
+    node: u32,
 }
 
-struct Binaries<'a> {
-    nodes: &'a [Binary],
-    choices: &'a [Choice],
+/// A child in the crown whose subtree is made on its own.
+struct Stump {
+    place: Place,
+    depth: u32,
+    /// Where it goes.
+    parent: usize,
+    slot: usize,
 }
 
-impl Binaries<'_> {
-    /// Appends the nodes at and below an inner node, and their leaves from `place` on.
-    fn emit(&self, index: usize, depth: u32, out: &mut Bvh, place: &mut u32) {
-        let mut children = ArrayVec::<usize, WIDTH>::new();
-        let k = self.choices[index].below(WIDTH);
-        self.gather(index + 1, k, &mut children);
-        self.gather(self.nodes[index].above as usize, WIDTH - k, &mut children);
-        let parent = out.nodes.len();
-        out.nodes.push(WideNode::EMPTY);
-        out.depth = out.depth.max(depth);
-        for (slot, &child) in children.iter().enumerate() {
-            let node = &self.nodes[child];
-            let what = if self.choices[child].is_leaf() {
-                let first = *place;
-                *place += node.count;
-                Child::leaf(first, node.count)
+/// Nodes and places in the order, both counted from 0.
+#[derive(Default)]
+struct Wide {
+    nodes: Vec<WideNode>,
+    /// Primitives in the leaves.
+    primitives: u32,
+    depth: u32,
+}
+
+impl Wide {
+    fn push(&mut self, depth: u32) -> usize {
+        self.nodes.push(WideNode::EMPTY);
+        self.depth = self.depth.max(depth);
+        self.nodes.len() - 1
+    }
+
+    fn push_leaf(&mut self, count: u32) -> Child {
+        let first = self.primitives;
+        self.primitives += count;
+        Child::leaf(first, count)
+    }
+
+    /// Puts subtrees in the places of their stumps.
+    fn append(&mut self, stumps: &[Stump], subtrees: &[Self]) {
+        let crown = self.nodes.len();
+        let total = crown + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
+        self.nodes.resize(total, WideNode::EMPTY);
+        let (crown_nodes, mut rest) = self.nodes.split_at_mut(crown);
+        let mut next = crown as u32;
+        let mut copies = Vec::with_capacity(subtrees.len());
+        for (stump, subtree) in stumps.iter().zip(subtrees) {
+            let (out, others) = rest.split_at_mut(subtree.nodes.len());
+            rest = others;
+            crown_nodes[stump.parent].children[stump.slot] = match subtree.nodes.first() {
+                Some(_) => Child::inner(next),
+                None => Child::leaf(self.primitives, subtree.primitives),
+            };
+            copies.push((out, &subtree.nodes, next, self.primitives));
+            next += subtree.nodes.len() as u32;
+            self.primitives += subtree.primitives;
+            self.depth = self.depth.max(subtree.depth);
+        }
+        copies.into_par_iter().for_each(|(out, nodes, first, primitives)| {
+            for (out, node) in out.iter_mut().zip(nodes) {
+                let children = node.children.map(|child| child.shifted(first, primitives));
+                *out = WideNode { children, ..*node };
+            }
+        });
+    }
+}
+
+struct Forest<'a> {
+    pieces: &'a [Vec<Binary>],
+}
+
+impl Forest<'_> {
+    #[inline]
+    fn node(&self, place: Place) -> &Binary {
+        &self.pieces[place.piece as usize][place.node as usize]
+    }
+
+    /// The node that a node stands for.
+    #[inline]
+    fn resolve(&self, place: Place) -> Place {
+        let node = self.node(place);
+        if node.choice.is_link() { Place { piece: node.above, node: 0 } } else { place }
+    }
+
+    /// The nodes at and below an inner node of a piece.
+    fn emit(&self, place: Place, depth: u32, out: &mut Wide) -> Child {
+        let parent = out.push(depth);
+        for (slot, child) in self.children(place).into_iter().enumerate() {
+            let node = self.node(child);
+            let what = if node.choice.is_leaf() {
+                out.push_leaf(node.choice.count())
             } else {
-                let next = out.nodes.len() as u32;
-                self.emit(child, depth + 1, out, place);
-                Child::inner(next)
+                self.emit(child, depth + 1, out)
             };
             out.nodes[parent].set(slot, &node.bounds, what);
         }
+        Child::inner(parent as u32)
     }
 
-    /// The nodes that take up to `places` of their parent's places instead of this one.
-    fn gather(&self, index: usize, places: usize, out: &mut ArrayVec<usize, WIDTH>) {
-        let mut places = places;
-        while places > 1 && self.nodes[index].above != 0 && self.choices[index].below(places) == 0 {
-            places -= 1;
+    /// The nodes of the crown alone. All other children become stumps, in the order of their primitives.
+    fn emit_crown(&self, place: Place, depth: u32, out: &mut Wide, stumps: &mut Vec<Stump>) -> Child {
+        let parent = out.push(depth);
+        for (slot, child) in self.children(place).into_iter().enumerate() {
+            let node = self.node(child);
+            let what = if child.piece == 0 && !node.choice.is_leaf() {
+                self.emit_crown(child, depth + 1, out, stumps)
+            } else {
+                stumps.push(Stump { place: child, depth: depth + 1, parent, slot });
+                Child::NONE
+            };
+            out.nodes[parent].set(slot, &node.bounds, what);
         }
-        if places == 1 || self.nodes[index].above == 0 {
-            return out.push(index);
+        Child::inner(parent as u32)
+    }
+
+    /// What replaces a stump; no nodes where that is a leaf.
+    fn emit_subtree(&self, stump: &Stump) -> Wide {
+        let mut out = Wide::default();
+        let choice = self.node(stump.place).choice;
+        if choice.is_leaf() {
+            out.push_leaf(choice.count());
+        } else {
+            self.emit(stump.place, stump.depth, &mut out);
         }
-        let below = self.choices[index].below(places);
-        self.gather(index + 1, below, out);
-        self.gather(self.nodes[index].above as usize, places - below, out);
+        out
+    }
+
+    /// The children of the wide node that an inner node becomes.
+    fn children(&self, place: Place) -> ArrayVec<Place, WIDTH> {
+        let mut children = ArrayVec::new();
+        self.share(place, WIDTH, &mut children);
+        children
+    }
+
+    /// Shares places out between the two children of an inner node.
+    fn share(&self, place: Place, places: usize, out: &mut ArrayVec<Place, WIDTH>) {
+        let node = self.node(place);
+        let below = node.choice.below(places);
+        self.gather(Place { node: place.node + 1, ..place }, below, out);
+        self.gather(Place { node: node.above, ..place }, places - below, out);
+    }
+
+    /// The nodes that make the best use of up to `places` places.
+    fn gather(&self, place: Place, places: usize, out: &mut ArrayVec<Place, WIDTH>) {
+        let place = self.resolve(place);
+        let choice = self.node(place).choice;
+        match (2..=places).rev().find(|&places| choice.below(places) > 0) {
+            Some(places) => self.share(place, places, out),
+            None => out.push(place),
+        }
     }
 }

@@ -1,95 +1,171 @@
 //! A binary tree from the root down.
+//!
+//! Large ranges are first sorted into the cells of a lattice, and parted by cells until few are left in a range;
+//! those small ranges are then parted by primitives, each on its own.
 
 use super::Bvh;
+use super::binary::{Binary, Choice, Costs, inner, leaf};
 use super::cost::BLOCK;
-use super::extent::Extent;
-use super::split::{Grid, best_split};
+use super::extent::{Extent, around};
+use super::lattice::Cells;
+use super::split::{Parts, part, part_at_median};
 use crate::accel::Aabb;
+use rayon::prelude::*;
 
-/// Ranges above this size grow their halves in parallel.
-const PARALLEL: usize = 4096;
+/// Ranges above this size are sorted into cells.
+const LARGE: usize = 1 << 15;
 
-/// A node of the binary tree, in depth-first order: the child below follows its parent.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Binary {
-    pub(super) bounds: Aabb,
-    /// Index of the child above; 0 for a leaf.
-    pub(super) above: u32,
-    /// Primitives in or below it.
-    pub(super) count: u32,
-}
+/// Ranges of fewer cells are parted by primitives: the borders of cells are too few.
+const FEW_CELLS: usize = 64;
 
-/// A binary tree, and its primitives from leaf to leaf.
+/// Ranges of fewer primitives are parted by primitives.
+const FEW_PRIMITIVES: usize = 1 << 10;
+
+/// A binary tree in pieces, and its primitives from leaf to leaf.
 pub(super) struct Grown {
-    pub(super) nodes: Vec<Binary>,
+    /// The first has the root; none where there are no primitives.
+    pub(super) pieces: Vec<Vec<Binary>>,
     pub(super) order: Vec<u32>,
 }
 
 pub(super) fn grow(boxes: &[Aabb]) -> Grown {
-    let mut items =
-        boxes.iter().enumerate().map(|(i, bounds)| Extent::new(bounds, i as u32)).collect::<Vec<_>>();
-    let mut nodes = Vec::new();
-    if !items.is_empty() {
-        subtree(&mut items, 0, &mut nodes);
+    if boxes.is_empty() {
+        return Grown { pieces: Vec::new(), order: Vec::new() };
     }
-    Grown { nodes, order: items.iter().map(Extent::primitive).collect() }
+    let mut items = vec![Extent::EMPTY; boxes.len()];
+    let tree = range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
+    let order = items.par_iter().with_min_len(1 << 14).map(Extent::name).collect();
+    let mut pieces = vec![Vec::new()];
+    let mut crown = Vec::new();
+    tree.take_apart(&mut crown, &mut pieces);
+    pieces[0] = crown;
+    Grown { pieces, order }
+}
+
+/// A part of the tree under construction.
+enum Tree {
+    Fork(Box<(Extent, usize, Self, Self)>),
+    Piece(Vec<Binary>, Costs),
+}
+
+impl Tree {
+    /// Appends the forks to the crown and the others to the pieces.
+    fn take_apart(self, crown: &mut Vec<Binary>, pieces: &mut Vec<Vec<Binary>>) -> Costs {
+        match self {
+            Self::Piece(nodes, costs) => {
+                crown.push(Binary { above: pieces.len() as u32, choice: Choice::LINK, ..nodes[0] });
+                pieces.push(nodes);
+                costs
+            }
+            Self::Fork(fork) => {
+                let (bounds, count, below, above) = *fork;
+                let parent = crown.len();
+                crown.push(Binary { bounds: bounds.to_aabb(), above: 0, choice: Choice::LINK });
+                let below = below.take_apart(crown, pieces);
+                crown[parent].above = crown.len() as u32;
+                let above = above.take_apart(crown, pieces);
+                let (costs, choice) = inner(bounds.half_area(), count, &below, &above);
+                crown[parent].choice = choice;
+                costs
+            }
+        }
+    }
+}
+
+/// The tree over all items, which are written in the order of its leaves.
+fn range(items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
+    let count = out.len();
+    if count > LARGE && !is_deep(depth, count) {
+        let mut cells = Cells::new(&items, count);
+        if cells.boxes.len() > 1 {
+            let plan = plan(&mut cells.boxes, count, depth, true);
+            cells.scatter(&items, out);
+            drop((items, cells));
+            return follow(plan, out, depth);
+        }
+    }
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = items(i);
+    }
+    piece(out, depth)
+}
+
+/// Whether only halves are sure to end within the bound on depth.
+fn is_deep(depth: u32, count: usize) -> bool {
+    depth + count.ilog2() + 2 >= Bvh::MAX_DEPTH
+}
+
+/// How a range is parted by cells.
+enum Plan {
+    Fork { bounds: Extent, count: usize, parts: Box<[Self; 2]> },
+    Rest { count: usize },
+}
+
+impl Plan {
+    fn count(&self) -> usize {
+        match self {
+            Self::Fork { count, .. } | Self::Rest { count } => *count,
+        }
+    }
+}
+
+fn plan(cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
+    let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
+    if cells.len() == 1 || (few && !is_first) || is_deep(depth, count) {
+        return Plan::Rest { count };
+    }
+    let bounds = around(cells);
+    let Parts { length, .. } = part(cells);
+    let (below, above) = cells.split_at_mut(length);
+    let count_below = below.iter().map(|cell| cell.weight() as usize).sum();
+    let mut grow_below = || plan(below, count_below, depth + 1, false);
+    let mut grow_above = || plan(above, count - count_below, depth + 1, false);
+    let (below, above) =
+        if length > FEW_CELLS { rayon::join(grow_below, grow_above) } else { (grow_below(), grow_above()) };
+    Plan::Fork { bounds, count, parts: Box::new([below, above]) }
+}
+
+fn follow(plan: Plan, items: &mut [Extent], depth: u32) -> Tree {
+    match plan {
+        Plan::Rest { count } if count > LARGE => {
+            let copy = items.to_vec();
+            range(move |i| copy[i], items, depth)
+        }
+        Plan::Rest { .. } => piece(items, depth),
+        Plan::Fork { bounds, count, parts } => {
+            let [below, above] = *parts;
+            let (items_below, items_above) = items.split_at_mut(below.count());
+            let (below, above) = rayon::join(
+                || follow(below, items_below, depth + 1),
+                || follow(above, items_above, depth + 1),
+            );
+            Tree::Fork(Box::new((bounds, count, below, above)))
+        }
+    }
+}
+
+fn piece(items: &mut [Extent], depth: u32) -> Tree {
+    let mut nodes = Vec::with_capacity(items.len() * 7 / 8);
+    let bounds = around(items);
+    let costs = subtree(items, &bounds, depth, &mut nodes);
+    Tree::Piece(nodes, costs)
 }
 
 /// Appends the tree over a range.
-fn subtree(items: &mut [Extent], depth: u32, out: &mut Vec<Binary>) {
-    let around = |items: &[Extent]| items.iter().fold(Extent::EMPTY, |sum, item| sum.union(item));
-    let parent = out.len();
-    out.push(Binary { bounds: around(items).to_aabb(), above: 0, count: items.len() as u32 });
-    if items.len() <= BLOCK {
-        return;
+fn subtree(items: &mut [Extent], bounds: &Extent, depth: u32, out: &mut Vec<Binary>) -> Costs {
+    let (parent, count) = (out.len(), items.len());
+    let area = bounds.half_area();
+    let (costs, choice) = leaf(area, count);
+    out.push(Binary { bounds: bounds.to_aabb(), above: 0, choice });
+    if count <= BLOCK {
+        return costs;
     }
-    let below = part(items, depth);
-    let large = items.len() > PARALLEL;
-    let (below, above) = items.split_at_mut(below);
-    if large {
-        let grow_above = || {
-            let mut other = Vec::new();
-            subtree(above, depth + 1, &mut other);
-            other
-        };
-        let ((), other) = rayon::join(|| subtree(below, depth + 1, out), grow_above);
-        let shift = out.len() as u32;
-        out[parent].above = shift;
-        let shifted =
-            |node: &Binary| Binary { above: if node.above == 0 { 0 } else { node.above + shift }, ..*node };
-        out.extend(other.iter().map(shifted));
-    } else {
-        subtree(below, depth + 1, out);
-        out[parent].above = out.len() as u32;
-        subtree(above, depth + 1, out);
-    }
-}
-
-/// Orders a range so that its two parts follow each other; the length of the first.
-fn part(items: &mut [Extent], depth: u32) -> usize {
-    let half = items.len() / 2;
-    let centers = items.iter().fold(Extent::EMPTY, |sum, item| {
-        let center = item.center();
-        sum.union(&Extent { low: center, high: -center })
-    });
-    // Halves from here on end just within the bound.
-    if depth + items.len().ilog2() + 1 >= Bvh::MAX_DEPTH {
-        let extent = (-(centers.low + centers.high)).truncate();
-        let axis = extent.max_position();
-        items.select_nth_unstable_by(half, |a, b| a.center()[axis].total_cmp(&b.center()[axis]));
-        return half;
-    }
-    let grid = Grid::new(&centers, 16);
-    let Some(split) = best_split(items, &grid) else { return half };
-    let (mut start, mut end) = (0, items.len());
-    while start < end {
-        if grid.places(&items[start])[split.axis] < split.bin {
-            start += 1;
-        } else {
-            end -= 1;
-            items.swap(start, end);
-        }
-    }
-    debug_assert_eq!(start, split.below);
-    start
+    let parts = if is_deep(depth, count) { part_at_median(items) } else { part(items) };
+    let (below, above) = items.split_at_mut(parts.length);
+    let below = subtree(below, &parts.bounds[0], depth + 1, out);
+    out[parent].above = out.len() as u32;
+    let above = subtree(above, &parts.bounds[1], depth + 1, out);
+    let (costs, choice) = inner(area, count, &below, &above);
+    out[parent].choice = choice;
+    costs
 }

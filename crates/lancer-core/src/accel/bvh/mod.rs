@@ -8,10 +8,12 @@
 //! Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs" (2017), section 3.1,
 //! for the collapse.
 
+mod binary;
 mod collapse;
 mod cost;
 mod extent;
 mod grow;
+mod lattice;
 mod node;
 mod split;
 #[cfg(test)]

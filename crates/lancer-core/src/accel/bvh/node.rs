@@ -105,4 +105,13 @@ impl Child {
     pub fn count(self) -> usize {
         (self.0 >> 28 & 7) as usize + 1
     }
+
+    /// The same child where nodes and places are counted from further back.
+    pub(super) fn shifted(self, nodes: u32, places: u32) -> Self {
+        match self {
+            Self::NONE => self,
+            leaf if leaf.is_leaf() => Self(leaf.0 + places),
+            Self(node) => Self(node + nodes),
+        }
+    }
 }
