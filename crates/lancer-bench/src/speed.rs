@@ -7,7 +7,7 @@
 use crate::Failure;
 use crate::subjects::{self, Subject};
 use lancer_core::Rgb;
-use lancer_core::accel::{KdSettings, KdTree};
+
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Ray};
 use lancer_core::render::{Control, render, with_threads};
@@ -102,7 +102,7 @@ impl Row {
         };
         for _ in 0..runs {
             let start = Instant::now();
-            KdTree::build(subject.mesh.as_ref(), KdSettings::default())?;
+            World::compile(&scene, &CompileOptions::default())?;
             row.build_seconds.push(start.elapsed().as_secs_f64());
             row.primary.push(rate(&rays.primary, |ray| world.intersect(ray).is_some()));
             row.shadow.push(rate(&rays.shadow, |ray| world.occluded(ray)));

@@ -5,8 +5,8 @@
 //!
 //! 1. [`scene`]: what an author says: a tree of named nodes with transforms, shapes and materials, lights,
 //!    cameras.
-//! 2. [`world`]: the tree compiled for tracing: flat, immutable, with a k-d tree over each mesh and one over
-//!    the objects.
+//! 2. [`world`]: the tree compiled for tracing: flat, immutable, with a tree over each mesh and one over the
+//!    objects.
 //! 3. [`render`]: tiles of pixels traced by [`integrator`] and lit by [`shade`], into a [`film`].
 //!
 //! ```
@@ -41,6 +41,7 @@ pub mod sampling;
 pub mod scene;
 pub mod shade;
 pub mod shape;
+pub mod simd;
 pub mod world;
 
 pub use color::Rgb;

@@ -163,7 +163,11 @@ fn load_options(reading: ReadingArgs) -> LoadOptions {
 }
 
 fn compile_options(work: &WorkArgs) -> CompileOptions {
-    CompileOptions { accelerator: work.accel, kd: KdSettings { leaf: work.kd_leaf, depth: work.kd_depth } }
+    CompileOptions {
+        accelerator: work.accel,
+        kd: KdSettings { leaf: work.kd_leaf, depth: work.kd_depth },
+        ..CompileOptions::default()
+    }
 }
 
 /// One thread a core; one where the system does not tell.

@@ -3,6 +3,7 @@
 mod aabb;
 pub mod bvh;
 pub mod kd_tree;
+pub(crate) mod triangles;
 
 pub use aabb::Aabb;
 pub use bvh::{Bvh, Quality};
@@ -11,8 +12,10 @@ pub use kd_tree::{BuildError, KdSettings, KdTree};
 /// Which structure finds hits. It changes the time that a picture takes, and nothing in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Accelerator {
-    /// A k-d tree over the objects, and one over the triangles of each mesh.
+    /// Hierarchies of boxes, eight to a node, searched by vector instructions. The fastest.
     #[default]
+    Bvh,
+    /// A k-d tree over the objects, and one over the triangles of each mesh.
     KdTree,
     /// None: every ray is tested against every object and every triangle. The oracle of the tests.
     BruteForce,
@@ -20,11 +23,12 @@ pub enum Accelerator {
 
 impl Accelerator {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::KdTree, Self::BruteForce];
+    pub const ALL: [Self; 3] = [Self::Bvh, Self::KdTree, Self::BruteForce];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Bvh => "bvh",
             Self::KdTree => "kd-tree",
             Self::BruteForce => "brute-force",
         }

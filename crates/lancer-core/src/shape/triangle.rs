@@ -9,7 +9,7 @@
 //! signs can never contradict the exact ones of the sheared vertices, since rounding is monotonic; they can
 //! only become zero, which counts as inside.
 
-use super::SurfacePoint;
+use super::{Hit, SurfacePoint};
 use crate::geometry::error::gamma;
 use crate::geometry::{DVec2, DVec3, Ray};
 use crate::mesh::Mesh;
@@ -83,6 +83,56 @@ impl ShearedRay {
             f64::from(point[y]) - self.origin[1] - self.shear[1] * along,
             along,
         ]
+    }
+}
+
+/// The canonical search for the nearest hit: the least t, and of equal ones the lowest triangle.
+pub(crate) struct Nearest<'a> {
+    ray: &'a Ray,
+    sheared: ShearedRay,
+    best: Hit,
+}
+
+impl<'a> Nearest<'a> {
+    pub(crate) fn new(ray: &'a Ray) -> Self {
+        Self { ray, sheared: ShearedRay::new(ray), best: Hit { t: ray.t_max, primitive: u32::MAX } }
+    }
+
+    pub(crate) fn consider(&mut self, id: u32, triangle: &[[f32; 3]; 3]) {
+        if let Some(hit) = self.sheared.intersect(triangle) {
+            let nearer = hit.t < self.best.t || (hit.t == self.best.t && id < self.best.primitive);
+            if nearer && hit.t > 0.0 && hit.t < self.ray.t_max {
+                self.best = Hit { t: hit.t, primitive: id };
+            }
+        }
+    }
+
+    /// The t of the nearest hit so far, or the end of the ray.
+    pub(crate) fn t(&self) -> f64 {
+        self.best.t
+    }
+
+    pub(crate) fn found(&self) -> Option<Hit> {
+        (self.best.primitive != u32::MAX).then_some(self.best)
+    }
+}
+
+/// The canonical test of a ray, made ready when it is first needed.
+pub(crate) struct Canonical<'a> {
+    ray: &'a Ray,
+    sheared: Option<ShearedRay>,
+}
+
+impl<'a> Canonical<'a> {
+    pub(crate) fn new(ray: &'a Ray) -> Self {
+        Self { ray, sheared: None }
+    }
+
+    /// Whether the ray hits a triangle.
+    #[inline(never)]
+    pub(crate) fn hits(&mut self, triangle: &[[f32; 3]; 3]) -> bool {
+        let sheared = self.sheared.get_or_insert_with(|| ShearedRay::new(self.ray));
+        sheared.intersect(triangle).is_some_and(|hit| hit.t > 0.0 && hit.t < self.ray.t_max)
     }
 }
 

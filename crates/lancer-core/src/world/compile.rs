@@ -1,12 +1,15 @@
 //! From a scene to a world.
 
-use super::geometry::{Geometry, PreparedMesh};
-use super::{Object, ObjectId, World};
-use crate::accel::{Aabb, Accelerator, BuildError, KdSettings, KdTree, Primitives};
+use super::geometry::{Geometry, PreparedMesh, TriangleIndex};
+use super::{Object, ObjectId, ObjectIndex, World};
+use crate::accel::triangles::TriangleTree;
+use crate::accel::{Aabb, Accelerator, Bvh, BuildError, KdSettings, KdTree, Primitives, Quality, bvh};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Transform};
 use crate::mesh::Mesh;
 use crate::scene::{Light, Material, MaterialId, NodeId, Scene, Shape, Texture};
+use crate::simd::InstructionSet;
+use fearless_simd::Level;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,8 +19,18 @@ use std::sync::Arc;
 pub struct CompileOptions {
     /// Which structure finds hits.
     pub accelerator: Accelerator,
-    /// The bounds of the k-d trees.
+    /// The bounds of the k-d trees; for [`Accelerator::KdTree`].
     pub kd: KdSettings,
+    /// How much time a hierarchy of boxes may take to build; for [`Accelerator::Bvh`].
+    pub quality: Quality,
+    /// Which vector instructions to use; the best ones where there is none, or not these.
+    pub instructions: Option<InstructionSet>,
+}
+
+impl CompileOptions {
+    fn level(&self) -> Level {
+        self.instructions.and_then(InstructionSet::level).unwrap_or_else(Level::new)
+    }
 }
 
 /// Why a scene cannot be traced. Nodes, materials and lights are told by name, or by number where they have none.
@@ -69,6 +82,9 @@ pub enum CompileError {
     /// A tree could not be built.
     #[error(transparent)]
     Tree(#[from] BuildError),
+    /// A hierarchy of boxes could not be built.
+    #[error(transparent)]
+    Bvh(#[from] bvh::BuildError),
 }
 
 impl World {
@@ -95,14 +111,12 @@ impl World {
         materials.push(Material::named("default"));
         let mut flat = Flat::default();
         flatten(scene, &drawn, &mut flat)?;
-        let kd = effective_settings(options);
         let meshes = flat
             .meshes
             .into_par_iter()
-            .map(|mesh| Ok(PreparedMesh { tree: KdTree::build(mesh.as_ref(), kd)?, mesh }))
-            .collect::<Result<Vec<_>, BuildError>>()?;
+            .map(|mesh| Ok(PreparedMesh { index: index_triangles(&mesh, options)?, mesh }))
+            .collect::<Result<Vec<_>, CompileError>>()?;
         let mut world = Self {
-            accelerator: options.accelerator,
             objects: flat.objects,
             meshes,
             materials,
@@ -111,15 +125,15 @@ impl World {
             background: scene.background,
             bounded: Vec::new(),
             unbounded: Vec::new(),
-            tree: KdTree::build(&ObjectBoxes(Vec::new()), kd)?,
+            index: ObjectIndex::None,
             bounds: Bounds::EMPTY,
         };
-        world.index_objects(kd)?;
+        world.index_objects(options)?;
         Ok(world)
     }
 
     /// Sorts objects into bounded and unbounded ones and builds the tree over the former.
-    fn index_objects(&mut self, kd: KdSettings) -> Result<(), BuildError> {
+    fn index_objects(&mut self, options: &CompileOptions) -> Result<(), CompileError> {
         let mut boxes = Vec::new();
         for (index, object) in self.objects.iter().enumerate() {
             let id = ObjectId(index as u32);
@@ -133,17 +147,25 @@ impl World {
                 self.unbounded.push(id);
             }
         }
-        self.tree = KdTree::build(&ObjectBoxes(boxes), kd)?;
+        self.index = match options.accelerator {
+            Accelerator::Bvh => {
+                ObjectIndex::Bvh { tree: Bvh::build(&boxes, options.quality)?, level: options.level() }
+            }
+            Accelerator::KdTree => ObjectIndex::Kd(KdTree::build(&ObjectBoxes(boxes), options.kd)?),
+            Accelerator::BruteForce => ObjectIndex::None,
+        };
         Ok(())
     }
 }
 
-/// The user's bounds; brute force needs no trees, so they are left at their roots.
-fn effective_settings(options: &CompileOptions) -> KdSettings {
-    match options.accelerator {
-        Accelerator::KdTree => options.kd,
-        Accelerator::BruteForce => KdSettings { leaf: Some(u32::MAX), depth: Some(0) },
-    }
+fn index_triangles(mesh: &Mesh, options: &CompileOptions) -> Result<TriangleIndex, CompileError> {
+    Ok(match options.accelerator {
+        Accelerator::Bvh => {
+            TriangleIndex::Bvh(TriangleTree::build(mesh, options.quality, options.level())?)
+        }
+        Accelerator::KdTree => TriangleIndex::Kd(KdTree::build(mesh, options.kd)?),
+        Accelerator::BruteForce => TriangleIndex::None,
+    })
 }
 
 /// The boxes of the bounded objects, for a tree.

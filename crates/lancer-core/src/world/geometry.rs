@@ -1,10 +1,11 @@
 //! What an object is made of, in its canonical space.
 
-use crate::accel::{Aabb, Accelerator, KdTree, Primitives};
+use crate::accel::triangles::TriangleTree;
+use crate::accel::{Aabb, KdTree, Primitives};
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec3, Ray};
 use crate::mesh::Mesh;
-use crate::shape::triangle::ShearedRay;
+use crate::shape::triangle::{Canonical, Nearest};
 use crate::shape::{Hit, SurfacePoint, cube, cylinder, plane, sphere, triangle};
 use std::sync::Arc;
 
@@ -18,11 +19,30 @@ pub(super) enum Geometry {
     Mesh(u32),
 }
 
-/// A mesh and the tree over its triangles.
+/// A mesh and what finds its triangles.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedMesh {
     pub(super) mesh: Arc<Mesh>,
-    pub(super) tree: KdTree,
+    pub(super) index: TriangleIndex,
+}
+
+/// What finds the triangles of a mesh.
+#[derive(Clone, Debug)]
+pub(super) enum TriangleIndex {
+    Bvh(TriangleTree),
+    Kd(KdTree),
+    None,
+}
+
+impl TriangleIndex {
+    /// Its nodes, its bytes, and the depth of the deepest node.
+    pub(super) fn size(&self) -> (u64, u64, u32) {
+        match self {
+            Self::Bvh(tree) => (tree.node_count() as u64, tree.bytes() as u64, tree.depth()),
+            Self::Kd(tree) => (tree.node_count() as u64, tree.bytes() as u64, tree.depth()),
+            Self::None => (0, 0, 0),
+        }
+    }
 }
 
 impl Geometry {
@@ -43,28 +63,23 @@ impl Geometry {
         }
     }
 
-    pub(super) fn intersect(
-        self,
-        ray: &Ray,
-        meshes: &[PreparedMesh],
-        accelerator: Accelerator,
-    ) -> Option<Hit> {
+    pub(super) fn intersect(self, ray: &Ray, meshes: &[PreparedMesh]) -> Option<Hit> {
         match self {
             Self::Sphere => sphere::intersect(ray),
             Self::Cube => cube::intersect(ray),
             Self::Cylinder { capped } => cylinder::intersect(ray, capped),
             Self::Plane => plane::intersect(ray),
-            Self::Mesh(index) => meshes[index as usize].intersect(ray, accelerator),
+            Self::Mesh(index) => meshes[index as usize].intersect(ray),
         }
     }
 
-    pub(super) fn occluded(self, ray: &Ray, meshes: &[PreparedMesh], accelerator: Accelerator) -> bool {
+    pub(super) fn occluded(self, ray: &Ray, meshes: &[PreparedMesh]) -> bool {
         match self {
             Self::Sphere => sphere::occluded(ray),
             Self::Cube => cube::occluded(ray),
             Self::Cylinder { capped } => cylinder::occluded(ray, capped),
             Self::Plane => plane::occluded(ray),
-            Self::Mesh(index) => meshes[index as usize].occluded(ray, accelerator),
+            Self::Mesh(index) => meshes[index as usize].occluded(ray),
         }
     }
 
@@ -81,45 +96,44 @@ impl Geometry {
 
 impl PreparedMesh {
     /// The nearest hit; of several at the same t, the lowest triangle's.
-    fn intersect(&self, ray: &Ray, accelerator: Accelerator) -> Option<Hit> {
-        let sheared = ShearedRay::new(ray);
-        let mut best = Hit { t: ray.t_max, primitive: u32::MAX };
-        let mut test = |primitive: u32| {
-            if let Some(hit) = sheared.intersect(&self.mesh.vertices(primitive)) {
-                let nearer = hit.t < best.t || (hit.t == best.t && primitive < best.primitive);
-                if nearer && hit.t > 0.0 && hit.t < ray.t_max {
-                    best = Hit { t: hit.t, primitive };
-                }
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        match &self.index {
+            TriangleIndex::Bvh(tree) => tree.intersect(ray),
+            TriangleIndex::Kd(tree) => {
+                let mut nearest = Nearest::new(ray);
+                tree.visit_leaves(ray, |candidates| {
+                    for &primitive in candidates {
+                        nearest.consider(primitive, &self.mesh.vertices(primitive));
+                    }
+                    nearest.t()
+                });
+                nearest.found()
             }
-            best.t
-        };
-        match accelerator {
-            Accelerator::KdTree => self.tree.visit_leaves(ray, |candidates| {
-                candidates.iter().fold(ray.t_max, |_, &primitive| test(primitive))
-            }),
-            Accelerator::BruteForce => (0..self.mesh.triangle_count() as u32).for_each(|primitive| {
-                test(primitive);
-            }),
+            TriangleIndex::None => {
+                let mut nearest = Nearest::new(ray);
+                for primitive in 0..self.mesh.triangle_count() as u32 {
+                    nearest.consider(primitive, &self.mesh.vertices(primitive));
+                }
+                nearest.found()
+            }
         }
-        (best.primitive != u32::MAX).then_some(best)
     }
 
-    fn occluded(&self, ray: &Ray, accelerator: Accelerator) -> bool {
-        let sheared = ShearedRay::new(ray);
-        let hits = |primitive: u32| {
-            let hit = sheared.intersect(&self.mesh.vertices(primitive));
-            hit.is_some_and(|hit| hit.t > 0.0 && hit.t < ray.t_max)
-        };
-        match accelerator {
-            Accelerator::KdTree => {
+    fn occluded(&self, ray: &Ray) -> bool {
+        let mut canonical = Canonical::new(ray);
+        match &self.index {
+            TriangleIndex::Bvh(tree) => tree.occluded(ray),
+            TriangleIndex::Kd(tree) => {
                 let mut found = false;
-                self.tree.visit_leaves(ray, |candidates| {
-                    found = candidates.iter().any(|&primitive| hits(primitive));
+                tree.visit_leaves(ray, |candidates| {
+                    found =
+                        candidates.iter().any(|&primitive| canonical.hits(&self.mesh.vertices(primitive)));
                     if found { f64::NEG_INFINITY } else { ray.t_max }
                 });
                 found
             }
-            Accelerator::BruteForce => (0..self.mesh.triangle_count() as u32).any(hits),
+            TriangleIndex::None => (0..self.mesh.triangle_count() as u32)
+                .any(|primitive| canonical.hits(&self.mesh.vertices(primitive))),
         }
     }
 }

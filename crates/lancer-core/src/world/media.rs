@@ -125,7 +125,7 @@ impl World {
         self.visit_objects(&segment, |id, object| {
             if id != at.object && touching.iter().all(|other| other.object != id) {
                 let ray = object.placement.ray_to_object(&segment);
-                if let Some(local) = object.geometry.intersect(&ray, &self.meshes, self.accelerator) {
+                if let Some(local) = object.geometry.intersect(&ray, &self.meshes) {
                     let hit = Hit { t: local.t, object: id, primitive: local.primitive };
                     touching.push(Touching {
                         object: id,

@@ -6,8 +6,8 @@
 //!   tree, children in the author's order. An object's place in it is its [`ObjectId`].
 //! - An object has its global transform and its inverse, one geometry, one material, and the scene node that it
 //!   came from. Groups, names and inheritance are gone: what was inherited is written out.
-//! - `geometries` holds each mesh once, with its k-d tree, however many objects share it.
-//! - Bounded objects are found through a k-d tree over their boxes; unbounded ones (planes) stand in a list that
+//! - `geometries` holds each mesh once, with its tree, however many objects share it.
+//! - Bounded objects are found through a tree over their boxes; unbounded ones (planes) stand in a list that
 //!   every ray goes through.
 //! - All transforms are invertible, all numbers finite, all coefficients and intensities not negative.
 //!
@@ -26,10 +26,13 @@ pub use intersection::Intersection;
 pub use media::Media;
 pub(crate) use media::Touching;
 
-use crate::accel::{Accelerator, KdTree};
+use crate::accel::bvh::Child;
+use crate::accel::triangles::{NarrowRay, Narrowed, walk};
+use crate::accel::{Bvh, KdTree};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Ray};
 use crate::scene::{Light, Material, MaterialId, NodeId};
+use fearless_simd::{Level, dispatch};
 use geometry::{Geometry, PreparedMesh};
 
 /// Which object of a world.
@@ -83,7 +86,6 @@ pub struct Hit {
 /// A scene compiled for tracing.
 #[derive(Clone, Debug)]
 pub struct World {
-    accelerator: Accelerator,
     objects: Vec<Object>,
     meshes: Vec<PreparedMesh>,
     materials: Vec<Material>,
@@ -93,8 +95,27 @@ pub struct World {
     /// The objects with finite boxes, in the order of the tree's primitives.
     bounded: Vec<ObjectId>,
     unbounded: Vec<ObjectId>,
-    tree: KdTree,
+    index: ObjectIndex,
     bounds: Bounds,
+}
+
+/// What finds the bounded objects, as numbers of their places in `bounded`.
+#[derive(Clone, Debug)]
+enum ObjectIndex {
+    Bvh { tree: Bvh, level: Level },
+    Kd(KdTree),
+    None,
+}
+
+impl ObjectIndex {
+    /// Its nodes, its bytes, and the depth of the deepest node.
+    fn size(&self) -> (u64, u64, u32) {
+        match self {
+            Self::Bvh { tree, .. } => (tree.nodes().len() as u64, tree.bytes() as u64, tree.depth()),
+            Self::Kd(tree) => (tree.node_count() as u64, tree.bytes() as u64, tree.depth()),
+            Self::None => (0, 0, 0),
+        }
+    }
 }
 
 /// What a world holds.
@@ -108,13 +129,13 @@ pub struct WorldStatistics {
     pub triangles: u64,
     /// Triangles that are drawn: each mesh as often as it is used.
     pub instanced_triangles: u64,
-    /// Nodes of all k-d trees.
+    /// Nodes of all trees.
     pub tree_nodes: u64,
-    /// Bytes of all k-d trees.
+    /// Bytes of all trees.
     pub tree_bytes: u64,
     /// Bytes of all meshes.
     pub mesh_bytes: u64,
-    /// The depth of the deepest k-d tree.
+    /// The depth of the deepest tree.
     pub tree_depth: u32,
 }
 
@@ -160,14 +181,9 @@ impl World {
         self.bounds
     }
 
-    /// The tree over the bounded objects.
-    pub fn object_tree(&self) -> &KdTree {
-        &self.tree
-    }
-
     /// What it holds.
     pub fn statistics(&self) -> WorldStatistics {
-        let trees = || self.meshes.iter().map(|mesh| &mesh.tree).chain([&self.tree]);
+        let sizes = || self.meshes.iter().map(|mesh| mesh.index.size()).chain([self.index.size()]);
         let triangles = |mesh: &PreparedMesh| mesh.mesh.triangle_count() as u64;
         WorldStatistics {
             objects: self.objects.len(),
@@ -179,10 +195,10 @@ impl World {
                 .filter_map(|object| object.geometry.mesh_index())
                 .map(|mesh| triangles(&self.meshes[mesh]))
                 .sum(),
-            tree_nodes: trees().map(|tree| tree.node_count() as u64).sum(),
-            tree_bytes: trees().map(|tree| tree.bytes() as u64).sum(),
+            tree_nodes: sizes().map(|(nodes, _, _)| nodes).sum(),
+            tree_bytes: sizes().map(|(_, bytes, _)| bytes).sum(),
             mesh_bytes: self.meshes.iter().map(|mesh| mesh.mesh.bytes() as u64).sum(),
-            tree_depth: trees().map(KdTree::depth).max().unwrap_or(0),
+            tree_depth: sizes().map(|(_, _, depth)| depth).max().unwrap_or(0),
         }
     }
 
@@ -193,7 +209,7 @@ impl World {
             // A hit at the same t is looked at too: the lower object is to win.
             let t_max = best.map_or(ray.t_max, |hit| hit.t.next_up());
             let local_ray = Ray { t_max, ..object.placement.ray_to_object(ray) };
-            if let Some(local) = object.geometry.intersect(&local_ray, &self.meshes, self.accelerator) {
+            if let Some(local) = object.geometry.intersect(&local_ray, &self.meshes) {
                 let hit = Hit { t: local.t, object: id, primitive: local.primitive };
                 let nearer = best.is_none_or(|best| (hit.t, hit.object) < (best.t, best.object));
                 if nearer {
@@ -210,7 +226,7 @@ impl World {
         let mut found = false;
         self.visit_objects(ray, |_, object| {
             let local_ray = object.placement.ray_to_object(ray);
-            found = object.geometry.occluded(&local_ray, &self.meshes, self.accelerator);
+            found = object.geometry.occluded(&local_ray, &self.meshes);
             if found { f64::NEG_INFINITY } else { ray.t_max }
         });
         found
@@ -227,15 +243,6 @@ impl World {
     /// Calls `visit` with the objects that the ray may meet, each once, roughly near before far. `visit` returns
     /// the t up to which hits still count, or `f64::NEG_INFINITY` to end.
     fn visit_objects(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
-        let everything = 0..self.objects.len() as u32;
-        if self.accelerator == Accelerator::BruteForce {
-            for id in everything.map(ObjectId) {
-                if visit(id, self.object(id)) == f64::NEG_INFINITY {
-                    return;
-                }
-            }
-            return;
-        }
         let mut t_max = ray.t_max;
         for &id in &self.unbounded {
             t_max = visit(id, self.object(id));
@@ -243,20 +250,55 @@ impl World {
                 return;
             }
         }
-        let mut visited = Mailbox::default();
         let ray = Ray { t_max, ..*ray };
-        self.tree.visit_leaves(&ray, |candidates| {
-            for &candidate in candidates {
-                if visited.first_time(candidate) {
-                    let id = self.bounded[candidate as usize];
-                    t_max = visit(id, self.object(id));
-                    if t_max == f64::NEG_INFINITY {
-                        break;
-                    }
+        match &self.index {
+            // A few objects are looked at one by one: each looks at its own bounds first.
+            _ if self.bounded.len() <= Self::FEW => self.visit_all_bounded(visit),
+            ObjectIndex::Bvh { tree, level } => match NarrowRay::new(&ray, &self.bounds) {
+                Narrowed::Misses => {}
+                Narrowed::Ready(narrow) => {
+                    let mut visit_leaf = |leaf: Child| {
+                        for &candidate in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
+                            let id = self.bounded[candidate as usize];
+                            t_max = visit(id, self.object(id));
+                            if t_max == f64::NEG_INFINITY {
+                                return -1.0;
+                            }
+                        }
+                        narrow.up_to(t_max)
+                    };
+                    dispatch!(*level, simd => walk::<_, true>(simd, tree.nodes(), &narrow, &mut visit_leaf));
                 }
+                Narrowed::OutOfRange => self.visit_all_bounded(visit),
+            },
+            ObjectIndex::Kd(tree) => {
+                let mut visited = Mailbox::default();
+                tree.visit_leaves(&ray, |candidates| {
+                    for &candidate in candidates {
+                        if visited.first_time(candidate) {
+                            let id = self.bounded[candidate as usize];
+                            t_max = visit(id, self.object(id));
+                            if t_max == f64::NEG_INFINITY {
+                                break;
+                            }
+                        }
+                    }
+                    t_max
+                });
             }
-            t_max
-        });
+            ObjectIndex::None => self.visit_all_bounded(visit),
+        }
+    }
+
+    /// As many objects as are worth no tree. Untuned.
+    const FEW: usize = 3;
+
+    fn visit_all_bounded(&self, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
+        for &id in &self.bounded {
+            if visit(id, self.object(id)) == f64::NEG_INFINITY {
+                return;
+            }
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Compilation, and the promises of what comes out of it.
 
 use super::*;
-use crate::accel::KdSettings;
+use crate::accel::Accelerator;
+
 use crate::geometry::{DVec3, Transform};
 use crate::mesh::{Mesh, MeshData};
 use crate::scene::{Node, Scene, Shape, Texture};
@@ -17,7 +18,7 @@ fn compile_error(scene: &Scene) -> CompileError {
 }
 
 fn by_brute_force(scene: &Scene) -> World {
-    World::compile(scene, &CompileOptions { accelerator: Accelerator::BruteForce, kd: KdSettings::default() })
+    World::compile(scene, &CompileOptions { accelerator: Accelerator::BruteForce, ..CompileOptions::default() })
         .unwrap()
 }
 

@@ -80,6 +80,11 @@ impl Bvh {
         Ok(collapse::collapse(grown))
     }
 
+    /// The nodes and the primitives in the order of the leaves.
+    pub(crate) fn into_parts(self) -> (Vec<WideNode>, Vec<u32>) {
+        (self.nodes, self.order)
+    }
+
     /// The nodes. The first is the root; it is there even where there is no primitive.
     pub fn nodes(&self) -> &[WideNode] {
         &self.nodes

@@ -66,12 +66,12 @@ impl Child {
     /// No child.
     pub const NONE: Self = Self(u32::MAX);
 
-    pub(super) fn inner(node: u32) -> Self {
+    pub(crate) fn inner(node: u32) -> Self {
         debug_assert!(node < LEAF);
         Self(node)
     }
 
-    pub(super) fn leaf(first: u32, count: u32) -> Self {
+    pub(crate) fn leaf(first: u32, count: u32) -> Self {
         debug_assert!(first < FIRST && (1..=MAX_LEAF as u32).contains(&count));
         Self(LEAF | (count - 1) << 28 | first)
     }

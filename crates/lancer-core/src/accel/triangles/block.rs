@@ -1,0 +1,162 @@
+//! Four triangles of a leaf, tested at once.
+//!
+//! Source of the test: Möller, Trumbore, "Fast, minimum storage ray/triangle intersection" (1997). Its results
+//! are compared with bounds on their error, so that they are known to be true, known to be false, or left to the
+//! canonical test in `f64`.
+
+use super::lanes::{add, cross, dot, load3, splat3, sub};
+use super::ray::{NarrowRay, UNIT_ROUNDOFF};
+use fearless_simd::prelude::*;
+use fearless_simd::f32x4;
+
+/// Triangles in a block.
+pub(super) const BLOCK: usize = 4;
+
+/// The corners of four triangles as a structure of arrays; and which triangles they are.
+///
+/// Where there are fewer, the last one is repeated, and `count` of the leaf says so.
+#[repr(C, align(16))]
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    /// By corner, then by axis, then by triangle.
+    pub(super) corners: [[[f32; BLOCK]; 3]; 3],
+    pub(super) ids: [u32; BLOCK],
+}
+
+/// What a ray does with the triangles of a block, a bit for each triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Verdict<S: Simd> {
+    /// Triangles that may be hit; all others are not.
+    pub(super) maybe: u32,
+    /// Those of them that are hit for sure.
+    pub(super) sure: u32,
+    /// Where a triangle is hit: no sooner than `numerator_low / denominator_high`, and if it is sure no later than
+    /// `numerator_high / denominator_low`.
+    pub(super) numerator: f32x4<S>,
+    pub(super) numerator_error: f32x4<S>,
+    pub(super) denominator: f32x4<S>,
+    pub(super) denominator_error: f32x4<S>,
+}
+
+impl<S: Simd> Verdict<S> {
+    #[inline(always)]
+    pub(super) fn earliest(&self, lane: usize) -> f32 {
+        let low = (self.numerator[lane] - self.numerator_error[lane]).max(0.0);
+        low / (self.denominator[lane] + self.denominator_error[lane]) * (1.0 - 4.0 * UNIT_ROUNDOFF)
+    }
+
+    /// As [`Verdict::earliest`], where the denominator may vanish, so that nothing may be known.
+    #[inline(always)]
+    pub(super) fn earliest_unsure(&self, lane: usize) -> f32 {
+        if self.denominator[lane] > self.denominator_error[lane] { self.earliest(lane) } else { 0.0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn latest(&self, lane: usize) -> f32 {
+        let high = self.numerator[lane] + self.numerator_error[lane];
+        high / (self.denominator[lane] - self.denominator_error[lane]) * (1.0 + 4.0 * UNIT_ROUNDOFF)
+    }
+}
+
+/// The parts of a ray, one number a lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BlockRay<S: Simd> {
+    origin: [f32x4<S>; 3],
+    origin_rest: [f32x4<S>; 3],
+    direction: [f32x4<S>; 3],
+    origin_error: f32x4<S>,
+}
+
+impl<S: Simd> BlockRay<S> {
+    #[inline(always)]
+    pub(super) fn new(simd: S, ray: &NarrowRay) -> Self {
+        Self {
+            origin: splat3(simd, ray.origin),
+            origin_rest: splat3(simd, ray.origin_rest),
+            direction: splat3(simd, ray.direction),
+            origin_error: f32x4::splat(simd, ray.origin_error),
+        }
+    }
+}
+
+impl Block {
+    /// A block of one to four triangles.
+    pub(super) fn new(ids: &[u32], vertices: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
+        let ids: [u32; BLOCK] = std::array::from_fn(|lane| ids[lane.min(ids.len() - 1)]);
+        let triangles = ids.map(vertices);
+        let corners = std::array::from_fn(|corner| {
+            std::array::from_fn(|axis| std::array::from_fn(|lane| triangles[lane][corner][axis]))
+        });
+        Self { corners, ids }
+    }
+
+    /// The corners of one of its triangles.
+    pub(super) fn triangle(&self, lane: usize) -> [[f32; 3]; 3] {
+        let corner = |c: &[[f32; BLOCK]; 3]| [c[0][lane], c[1][lane], c[2][lane]];
+        let [a, b, c] = &self.corners;
+        [corner(a), corner(b), corner(c)]
+    }
+
+    /// Tests a ray against the first `count` triangles, for hits with `s` in (0, `end`).
+    #[inline(always)]
+    pub(super) fn test<S: Simd>(&self, simd: S, ray: &BlockRay<S>, count: usize, end: f32) -> Verdict<S> {
+        let splat = |x: f32| f32x4::splat(simd, x);
+        let a: [f32x4<S>; 3] = load3(simd, &self.corners[0]);
+        let b = load3(simd, &self.corners[1]);
+        let c = load3(simd, &self.corners[2]);
+        let (e1, e2) = (sub(b, a), sub(c, a));
+        let from_a = add(sub(ray.origin, a), ray.origin_rest);
+        let p = cross(ray.direction, e2);
+        let q = cross(from_a, e1);
+        let determinant = dot(e1, p);
+        // Everything is turned so that the determinant is positive.
+        let flip = determinant.simd_lt(splat(0.0));
+        let turn = |x: f32x4<S>| flip.select(-x, x);
+        let denominator = turn(determinant);
+        let (u, v, numerator) = (turn(dot(from_a, p)), turn(dot(ray.direction, q)), turn(dot(e2, q)));
+
+        // With S = |from_a|, E = the longer edge, both by their largest component, and e the error of the origin,
+        // the errors are below 64 u S E + 8 e E of u and v, 64 u E^2 of the determinant, and E times the former of
+        // the numerator. Derived in docs/kernels.md.
+        let edge = largest(e1).max(largest(e2));
+        let reach = largest(from_a);
+        let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + ray.origin_error * 8.0);
+        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF);
+        let numerator_error = error * edge;
+        let sum_error = error * 3.0 + denominator_error * 2.0;
+        let rest = denominator - u - v;
+        let limit = denominator * end;
+        let limit_error = denominator_error * end + limit * (8.0 * UNIT_ROUNDOFF) + numerator_error;
+
+        let in_reach = |value: f32x4<S>, error: f32x4<S>| value.simd_ge(-error);
+        let beyond = |value: f32x4<S>, error: f32x4<S>| value.simd_gt(error);
+        let maybe = in_reach(u, error)
+            & in_reach(v, error)
+            & in_reach(rest, sum_error)
+            & in_reach(numerator, numerator_error)
+            & in_reach(limit - numerator, limit_error)
+            | denominator.simd_le(denominator_error);
+        let sure = beyond(u, error)
+            & beyond(v, error)
+            & beyond(rest, sum_error)
+            & beyond(numerator, numerator_error)
+            & beyond(limit - numerator, limit_error)
+            & beyond(denominator, denominator_error);
+        let present = (1 << count) - 1;
+        let maybe = maybe.to_bitmask() as u32 & present;
+        Verdict {
+            maybe,
+            sure: sure.to_bitmask() as u32 & maybe,
+            numerator,
+            numerator_error,
+            denominator,
+            denominator_error,
+        }
+    }
+}
+
+/// The largest component in size.
+#[inline(always)]
+fn largest<S: Simd>([x, y, z]: [f32x4<S>; 3]) -> f32x4<S> {
+    x.abs().max(y.abs()).max(z.abs())
+}

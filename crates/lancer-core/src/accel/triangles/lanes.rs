@@ -1,0 +1,41 @@
+//! Vectors of three coordinates with many lanes each.
+//!
+//! Arrays are written out: the closures of `map` are not always inlined, and must be to be vectorised.
+
+use fearless_simd::{Simd, SimdFloat};
+
+#[inline(always)]
+pub(super) fn splat3<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, v: [f32; 3]) -> [V; 3] {
+    [V::splat(simd, v[0]), V::splat(simd, v[1]), V::splat(simd, v[2])]
+}
+
+#[inline(always)]
+pub(super) fn add<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+pub(super) fn sub<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Loads lanes by axis.
+#[inline(always)]
+pub(super) fn load3<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, v: &[V::Array; 3]) -> [V; 3] {
+    [V::load_array_ref(simd, &v[0]), V::load_array_ref(simd, &v[1]), V::load_array_ref(simd, &v[2])]
+}
+
+/// Products may be fused with the sums: kernels do not depend on how they round, only on how much.
+#[inline(always)]
+pub(super) fn dot<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> V {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+#[inline(always)]
+pub(super) fn cross<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
+    [
+        a[1].mul_sub(b[2], a[2] * b[1]),
+        a[2].mul_sub(b[0], a[0] * b[2]),
+        a[0].mul_sub(b[1], a[1] * b[0]),
+    ]
+}

@@ -1,0 +1,164 @@
+//! The triangles of a mesh under a hierarchy of boxes, and the vector kernels that search it.
+//!
+//! A kernel computes in `f32` with bounds on its error, so that each of its comparisons says yes, no, or too
+//! close to tell. What is too close is decided by the canonical test ([`ShearedRay`], in `f64`), and so is where
+//! exactly a ray hits: a picture is the same as if only that test had been used, on every triangle.
+
+mod block;
+mod lanes;
+mod ray;
+mod single;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+pub(crate) use ray::{NarrowRay, Narrowed};
+pub(crate) use walk::walk;
+
+use super::Aabb;
+use super::bvh::{Bvh, BuildError, Child, Quality, WideNode};
+use crate::geometry::{Bounds, Ray};
+use crate::mesh::Mesh;
+use crate::shape::Hit;
+use crate::shape::triangle::Nearest;
+use block::{BLOCK, Block};
+use fearless_simd::{Level, dispatch};
+use rayon::prelude::*;
+
+/// A mesh's triangles, ready to be searched.
+#[derive(Clone, Debug)]
+pub(crate) struct TriangleTree {
+    /// Depth first. A leaf's first place is that of its first block.
+    nodes: Vec<WideNode>,
+    blocks: Vec<Block>,
+    bounds: Bounds,
+    depth: u32,
+    level: Level,
+}
+
+impl TriangleTree {
+    /// Builds the tree, on the threads of the current rayon pool.
+    ///
+    /// # Errors
+    /// [`BuildError::TooManyPrimitives`].
+    pub(crate) fn build(mesh: &Mesh, quality: Quality, level: Level) -> Result<Self, BuildError> {
+        let boxes: Vec<Aabb> =
+            (0..mesh.triangle_count() as u32).into_par_iter().map(|id| box_of(&mesh.vertices(id))).collect();
+        let bvh = Bvh::build(&boxes, quality)?;
+        drop(boxes);
+        let depth = bvh.depth();
+        let (mut nodes, order) = bvh.into_parts();
+        let mut leaves: Vec<Child> = Vec::new();
+        let mut place = 0;
+        for child in nodes.iter_mut().flat_map(|node| &mut node.children) {
+            if child.is_leaf() && !child.is_none() {
+                leaves.push(*child);
+                *child = Child::leaf(place, child.count() as u32);
+                place += child.count().div_ceil(BLOCK) as u32;
+            }
+        }
+        let blocks = leaves
+            .iter()
+            .flat_map(|leaf| order[leaf.first()..leaf.first() + leaf.count()].chunks(BLOCK))
+            .map(|ids| Block::new(ids, |id| mesh.vertices(id)))
+            .collect();
+        Ok(Self { nodes, blocks, bounds: mesh.bounds(), depth, level })
+    }
+
+    /// Nodes of the hierarchy.
+    pub(crate) fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Steps from the root to the node furthest from it.
+    pub(crate) fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..])
+    }
+
+    /// The nearest hit; of several at the same t, the lowest triangle's.
+    pub(crate) fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        match NarrowRay::new(ray, &self.bounds) {
+            Narrowed::Misses => None,
+            Narrowed::Ready(narrow) => {
+                dispatch!(self.level, simd => single::intersect(simd, self, ray, &narrow))
+            }
+            Narrowed::OutOfRange => self.intersect_wide(ray),
+        }
+    }
+
+    /// Whether anything is hit.
+    pub(crate) fn occluded(&self, ray: &Ray) -> bool {
+        match NarrowRay::new(ray, &self.bounds) {
+            Narrowed::Misses => false,
+            Narrowed::Ready(narrow) => {
+                dispatch!(self.level, simd => single::occluded(simd, self, ray, &narrow))
+            }
+            Narrowed::OutOfRange => self.intersect_wide(ray).is_some(),
+        }
+    }
+
+    /// The nearest hit, in `f64` throughout: for the rare ray whose numbers leave the range of `f32`.
+    fn intersect_wide(&self, ray: &Ray) -> Option<Hit> {
+        let mut nearest = Nearest::new(ray);
+        let mut stack = vec![0];
+        while let Some(index) = stack.pop() {
+            let node = &self.nodes[index];
+            for place in 0..node.children.len() {
+                let child = node.child(place);
+                if child.is_none() || !may_meet(ray, &node.bounds(place), nearest.t()) {
+                    continue;
+                }
+                if child.is_leaf() {
+                    for (id, triangle) in self.leaf(child) {
+                        nearest.consider(id, &triangle);
+                    }
+                } else {
+                    stack.push(child.node());
+                }
+            }
+        }
+        nearest.found()
+    }
+
+    /// The triangles of a leaf.
+    fn leaf(&self, leaf: Child) -> impl Iterator<Item = (u32, [[f32; 3]; 3])> {
+        (0..leaf.count()).map(move |i| {
+            let block = &self.blocks[leaf.first() + i / BLOCK];
+            (block.ids[i % BLOCK], block.triangle(i % BLOCK))
+        })
+    }
+}
+
+fn box_of([a, b, c]: &[[f32; 3]; 3]) -> Aabb {
+    Aabb {
+        min: std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis])),
+        max: std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis])),
+    }
+}
+
+/// Whether a ray may meet a box before `t_max`; never false where it does.
+fn may_meet(ray: &Ray, aabb: &Aabb, t_max: f64) -> bool {
+    let bounds = aabb.to_bounds();
+    let slack = (ray.origin.abs() + bounds.magnitude()) * (64.0 * f64::EPSILON);
+    let (mut enter, mut leave) = (0.0_f64, t_max);
+    for axis in 0..3 {
+        let (o, d) = (ray.origin[axis], ray.direction[axis]);
+        let (low, high) = (bounds.min[axis] - slack[axis] - o, bounds.max[axis] + slack[axis] - o);
+        if d == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+        } else {
+            // An overflow makes an infinity, which keeps the box or its bound.
+            let (near, far) = if d > 0.0 { (low / d, high / d) } else { (high / d, low / d) };
+            enter = enter.max(near);
+            leave = leave.min(far);
+        }
+    }
+    enter <= leave * (1.0 + 8.0 * f64::EPSILON)
+}

@@ -1,0 +1,143 @@
+//! A ray in `f32`, with bounds on what that loses.
+
+use crate::geometry::{Bounds, DVec3, Ray};
+
+/// Half the distance from 1 to the next `f32`: the relative error of one operation.
+pub(super) const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
+
+/// A ray made ready for the boxes and triangles within certain bounds.
+///
+/// It is scaled so that its direction's largest component is 1 in size, and starts near the bounds even if the
+/// ray starts far away, so that `f32` is spent on the part of the ray that counts. Parameters along it, `s`, are
+/// therefore not the ray's own t; see [`NarrowRay::up_to`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NarrowRay {
+    /// Where it starts, rounded, and the remainder, rounded.
+    pub(super) origin: [f32; 3],
+    pub(super) origin_rest: [f32; 3],
+    pub(super) direction: [f32; 3],
+    /// 1 / direction, with components too small for that enlarged.
+    pub(super) inverse: [f32; 3],
+    /// What is added to a plane's coordinate times `inverse`: for the planes that the ray enters by, and leaves
+    /// by. Each is moved outward by more than all rounding in a slab test, so that no box that the ray meets is
+    /// missed.
+    pub(super) enter_offset: [f32; 3],
+    pub(super) leave_offset: [f32; 3],
+    /// How far its start may lie from the true one.
+    pub(super) origin_error: f32,
+    /// Up to which `s` hits count. May exceed the bounds.
+    pub(super) end: f32,
+    /// The ray's t at `s` = 0, and the `s` of a unit of t.
+    start: f64,
+    scale: f64,
+}
+
+/// What becomes of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Narrowed {
+    /// It does not meet the bounds.
+    Misses,
+    /// It can be traced in `f32`.
+    Ready(NarrowRay),
+    /// Its numbers are too large or too small for `f32`, or its origin too far away.
+    OutOfRange,
+}
+
+/// Sizes of coordinates for which no product of a kernel leaves the range of `f32`.
+const SIZES: std::ops::Range<f64> = 1e-9..1e9;
+
+/// A component of a direction below this is as good as zero: along the ray, within bounds that are at most 4
+/// times [`SIZES`] apart relative to their size, it moves by less than the slack of the slab test.
+const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
+
+impl NarrowRay {
+    /// Prepares a ray for what lies within `bounds`, which are finite and not empty.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, bounds: &Bounds) -> Narrowed {
+        let length = ray.direction.abs().max_element();
+        let scale = 1.0 / length;
+        let direction = ray.direction * scale;
+        let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let distance = ray.origin.abs().max_element();
+        if !(SIZES.contains(&size) && scale.is_finite() && distance < size * 1e6 && length < 1e100) {
+            return Narrowed::OutOfRange;
+        }
+        // All rounding in f64, here and in the canonical test, is below this.
+        let slack = (distance + size) * (256.0 * f64::EPSILON);
+        let Some((enter, leave)) = slab(ray.origin, direction, bounds, slack) else {
+            return Narrowed::Misses;
+        };
+        let last = ray.t_max * length;
+        if enter > last {
+            return Narrowed::Misses;
+        }
+        // A little before the bounds, so that a hit on their face is clearly ahead.
+        let start = (enter - size * (1.0 / 64.0)).max(0.0);
+        let origin = ray.origin + direction * start;
+        let end = (last - start).min(2.0 * (leave - start) + size);
+        Narrowed::Ready(Self::assemble(origin, direction, size, slack, end, start, length))
+    }
+
+    #[inline]
+    fn assemble(
+        origin: DVec3,
+        direction: DVec3,
+        size: f64,
+        slack: f64,
+        end: f64,
+        start: f64,
+        length: f64,
+    ) -> Self {
+        let size = size.max(origin.abs().max_element());
+        let narrow = narrowed(origin);
+        let rest = narrowed(origin - widened(narrow));
+        let inverse = narrowed(safe_inverse(direction));
+        // A slab test computes b * inverse + offset: see `margin` in the tests for the sum of its errors, which is
+        // below 12 units of roundoff of |b| + |origin|, each at most `size`.
+        let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
+        let offset = |axis: usize, sign: f32| -narrow[axis] * inverse[axis] + sign * margin * inverse[axis].abs();
+        Self {
+            origin: narrow,
+            origin_rest: rest,
+            direction: narrowed(direction),
+            inverse,
+            enter_offset: [offset(0, -1.0), offset(1, -1.0), offset(2, -1.0)],
+            leave_offset: [offset(0, 1.0), offset(1, 1.0), offset(2, 1.0)],
+            origin_error: slack as f32,
+            end: end as f32,
+            start,
+            scale: length,
+        }
+    }
+
+    /// The parameter of a t of the ray, not less than the true one and not less than 0.
+    #[inline]
+    pub(crate) fn up_to(&self, t: f64) -> f32 {
+        let s = t * self.scale - self.start;
+        let s = (s as f32).max(0.0) * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.origin_error;
+        s.min(self.end)
+    }
+}
+
+/// Where a ray enters and leaves a box, from its origin on, widened by `slack`.
+#[inline]
+fn slab(origin: DVec3, direction: DVec3, bounds: &Bounds, slack: f64) -> Option<(f64, f64)> {
+    let inverse = safe_inverse(direction);
+    let low = (bounds.min - slack - origin) * inverse;
+    let high = (bounds.max + slack - origin) * inverse;
+    let enter = low.min(high).max_element().max(0.0);
+    let leave = low.max(high).min_element();
+    (enter <= leave).then_some((enter, leave))
+}
+
+fn safe_inverse(direction: DVec3) -> DVec3 {
+    direction.abs().max(DVec3::splat(LEAST_COMPONENT)).copysign(direction).recip()
+}
+
+fn narrowed(v: DVec3) -> [f32; 3] {
+    [v.x as f32, v.y as f32, v.z as f32]
+}
+
+fn widened([x, y, z]: [f32; 3]) -> DVec3 {
+    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+}

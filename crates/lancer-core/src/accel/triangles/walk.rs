@@ -1,0 +1,100 @@
+//! One ray through a hierarchy of boxes, eight at a time.
+
+use super::lanes::splat3;
+use super::ray::NarrowRay;
+use crate::accel::bvh::{Bvh, Child, WIDTH, WideNode};
+use arrayvec::ArrayVec;
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
+
+/// Room for all that can wait: each level of the tree leaves seven children behind.
+const STACK: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1) + 1;
+
+/// Calls `visit` with the leaves that a ray meets.
+///
+/// `visit` is given a leaf and returns the `s` up to which hits still count; a negative one ends the walk. With
+/// `NEAREST_FIRST`, leaves that are entered sooner come sooner, by the order of each node's children.
+#[inline(always)]
+pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
+    simd: S,
+    nodes: &[WideNode],
+    ray: &NarrowRay,
+    mut visit: impl FnMut(Child) -> f32,
+) {
+    let inverse: [f32x8<S>; 3] = splat3(simd, ray.inverse);
+    let enter_offset: [f32x8<S>; 3] = splat3(simd, ray.enter_offset);
+    let leave_offset: [f32x8<S>; 3] = splat3(simd, ray.leave_offset);
+    let backward = [ray.inverse[0] < 0.0, ray.inverse[1] < 0.0, ray.inverse[2] < 0.0];
+    let zero = f32x8::splat(simd, 0.0);
+    let mut end = ray.end;
+    let mut stack = ArrayVec::<(Child, f32), STACK>::new();
+    let mut current = Child::inner(0);
+    loop {
+        if current.is_leaf() {
+            end = visit(current);
+            if end < 0.0 {
+                return;
+            }
+        } else {
+            let node = &nodes[current.node()];
+            let enter = plane(simd, node, 0, backward[0], inverse[0], enter_offset[0])
+                .max(plane(simd, node, 1, backward[1], inverse[1], enter_offset[1]))
+                .max(plane(simd, node, 2, backward[2], inverse[2], enter_offset[2]).max(zero));
+            let leave = plane(simd, node, 0, !backward[0], inverse[0], leave_offset[0])
+                .min(plane(simd, node, 1, !backward[1], inverse[1], leave_offset[1]))
+                .min(plane(simd, node, 2, !backward[2], inverse[2], leave_offset[2]).min(f32x8::splat(simd, end)));
+            let mut met = enter.simd_le(leave).to_bitmask() as u32;
+            if met != 0 {
+                let first = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let mut next = (node.children[first], enter[first]);
+                let waiting = stack.len();
+                while met != 0 {
+                    let child = met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    let mut other = (node.children[child], enter[child]);
+                    if NEAREST_FIRST {
+                        if other.1 < next.1 {
+                            std::mem::swap(&mut other, &mut next);
+                        }
+                        stack.push(other);
+                        // The children of one node wait in order, the nearest last; there are few of them.
+                        let mut place = stack.len() - 1;
+                        while place > waiting && stack[place - 1].1 < stack[place].1 {
+                            stack.swap(place - 1, place);
+                            place -= 1;
+                        }
+                    } else {
+                        stack.push(other);
+                    }
+                }
+                current = next.0;
+                continue;
+            }
+        }
+        loop {
+            match stack.pop() {
+                None => return,
+                Some((child, enter)) if enter <= end => {
+                    current = child;
+                    break;
+                }
+                Some(_) => {}
+            }
+        }
+    }
+}
+
+/// Where a ray meets the upper or lower planes of an axis.
+#[inline(always)]
+fn plane<S: Simd>(
+    simd: S,
+    node: &WideNode,
+    axis: usize,
+    upper: bool,
+    inverse: f32x8<S>,
+    offset: f32x8<S>,
+) -> f32x8<S> {
+    let side = if upper { &node.max[axis] } else { &node.min[axis] };
+    f32x8::load_array_ref(simd, side).mul_add(inverse, offset)
+}
