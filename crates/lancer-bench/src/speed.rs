@@ -11,7 +11,7 @@ use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Ray};
 use lancer_core::render::{Control, render, with_threads};
-use lancer_core::sampling::{Key, Rotation, SphereLattice};
+use lancer_core::sampling::{HemisphereLattice, Key};
 use lancer_core::scene::{AmbientOcclusion, Node, Scene, Settings};
 use lancer_core::shade::reflect;
 use lancer_core::world::{CompileOptions, World};
@@ -162,7 +162,7 @@ struct Rays {
 impl Rays {
     fn new(world: &World, scene: &Scene) -> Result<Self, Failure> {
         let projection = scene.camera.project(WIDTH, HEIGHT)?;
-        let lattice = SphereLattice::new(AO_SAMPLES);
+        let lattice = HemisphereLattice::new(AO_SAMPLES);
         let mut rays = Self { primary: Vec::new(), shadow: Vec::new(), mirror: Vec::new(), ao: Vec::new() };
         for (y, x) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))) {
             let ray = projection.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
@@ -172,11 +172,12 @@ impl Rays {
             let normal = at.facing_normal();
             rays.shadow.extend(world.lights().iter().map(|light| at.segment_to(light.position)));
             rays.mirror.push(at.spawn(reflect(ray.direction, normal)));
-            let rotation = Rotation::random(&mut Key::camera(x, y, 0).stream());
-            let above = lattice.turned(&rotation).filter(|direction| normal.dot(*direction) > 0.0);
-            rays.ao.extend(
-                above.map(|direction| Ray { t_max: scene.settings.ao.distance, ..at.spawn(direction) }),
-            );
+            for fan in lattice.around(normal, &mut Key::camera(x, y, 0).stream()) {
+                rays.ao.extend((0..fan.count).map(|i| Ray {
+                    t_max: scene.settings.ao.distance,
+                    ..at.spawn(fan.direction(i))
+                }));
+            }
         }
         Ok(rays)
     }

@@ -6,6 +6,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args as ClapArgs, Parser, Subcommand};
 use lancer_core::accel::{Accelerator, KdTree};
+use lancer_core::simd::InstructionSet;
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
 use lancer_io::scene_file::Override;
@@ -136,9 +137,13 @@ pub(crate) struct WorkArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_THREADS))]
     pub(crate) threads: Option<u32>,
 
-    /// How rays find what they hit
-    #[arg(long, value_name = "NAME", value_parser = accelerator_parser(), default_value = Accelerator::KdTree.name())]
-    pub(crate) accel: Accelerator,
+    /// How rays find what they hit; without it, bvh, or kd-tree where its bounds are given
+    #[arg(long, value_name = "NAME", value_parser = accelerator_parser())]
+    pub(crate) accel: Option<Accelerator>,
+
+    /// Vector instructions to use; without it, the best that the processor has
+    #[arg(long, value_name = "SET", value_parser = instructions_parser())]
+    pub(crate) instructions: Option<InstructionSet>,
 
     /// Triangles in a leaf of the k-d tree, at most; without it, chosen by cost
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -223,6 +228,13 @@ fn accelerator_parser() -> impl TypedValueParser<Value = Accelerator> {
     PossibleValuesParser::new(Accelerator::ALL.map(Accelerator::name)).map(|name| {
         let named = |accelerator: &Accelerator| accelerator.name() == name;
         Accelerator::ALL.into_iter().find(named).expect("the parser lets only these names through")
+    })
+}
+
+fn instructions_parser() -> impl TypedValueParser<Value = InstructionSet> {
+    let available = || InstructionSet::ALL.into_iter().filter(|set| set.is_available());
+    PossibleValuesParser::new(available().map(InstructionSet::name)).map(move |name| {
+        available().find(|set| set.name() == name).expect("the parser lets only these names through")
     })
 }
 

@@ -7,7 +7,7 @@ use crate::args::{PictureArgs, ReadingArgs, RenderArgs, WorkArgs};
 use crate::destination::Destination;
 use crate::error::Error;
 use crate::source::Source;
-use lancer_core::accel::KdSettings;
+use lancer_core::accel::{Accelerator, KdSettings};
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
 use lancer_core::render::{Control, Region, RenderError};
@@ -163,9 +163,12 @@ fn load_options(reading: ReadingArgs) -> LoadOptions {
 }
 
 fn compile_options(work: &WorkArgs) -> CompileOptions {
+    let kd = KdSettings { leaf: work.kd_leaf, depth: work.kd_depth };
+    let chosen = if kd == KdSettings::default() { Accelerator::default() } else { Accelerator::KdTree };
     CompileOptions {
-        accelerator: work.accel,
-        kd: KdSettings { leaf: work.kd_leaf, depth: work.kd_depth },
+        accelerator: work.accel.unwrap_or(chosen),
+        kd,
+        instructions: work.instructions,
         ..CompileOptions::default()
     }
 }

@@ -5,11 +5,13 @@
 
 mod bounds;
 pub mod error;
+mod fan;
 pub mod portable;
 mod ray;
 mod transform;
 
 pub use bounds::Bounds;
+pub use fan::DirectionFan;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
 pub use ray::Ray;
 pub use transform::{Placement, SingularTransform, Transform};

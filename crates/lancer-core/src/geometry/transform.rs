@@ -100,6 +100,8 @@ pub struct Placement {
     world_from_object: DMat3,
     object_from_world: DMat3,
     translation: DVec3,
+    /// See [`Placement::stretch_to_object`].
+    stretch: (f64, f64),
 }
 
 impl Placement {
@@ -129,7 +131,29 @@ impl Placement {
             world_from_object: linear,
             object_from_world,
             translation: world_from_object.translation(),
+            stretch: (1.0 / largest_stretch(linear), largest_stretch(object_from_world)),
         })
+    }
+
+    /// The inverse, for directions.
+    pub fn object_from_world(&self) -> DMat3 {
+        self.object_from_world
+    }
+
+    /// Bounds on the length in the object's space of a unit vector of the world: not more than the least, and not
+    /// less than the greatest. They are exact, but for rounding, where the transform keeps angles.
+    pub fn stretch_to_object(&self) -> (f64, f64) {
+        self.stretch
+    }
+
+    /// The image in the object's space of a point of the world.
+    pub fn point_to_object(&self, point_in_world: DVec3) -> DVec3 {
+        self.object_from_world * (point_in_world - self.translation)
+    }
+
+    /// What gives with the image of a vector the same product as `covector_in_world` with the vector.
+    pub fn covector_to_object(&self, covector_in_world: DVec3) -> DVec3 {
+        self.world_from_object.transpose() * covector_in_world
     }
 
     /// The ray in the object's space. Its direction keeps its length, so t means the same in both spaces.
@@ -185,6 +209,17 @@ impl Placement {
 /// sums with the translation, and an inverse computed by cofactors, which counts for a dozen. An upper bound;
 /// fewer would let rays meet the surface that they left, more would only move them a little further off.
 const ROUND_TRIP_OPERATIONS: u32 = 24;
+
+/// Not less than the length of the image of any unit vector.
+///
+/// The square root of the greatest eigenvalue of M^T M, bounded by Gershgorin's circles: exact where the columns
+/// are orthogonal.
+fn largest_stretch(m: DMat3) -> f64 {
+    let size = max_entry(m);
+    let scaled = m * (1.0 / size);
+    let rows = absolute(scaled.transpose() * scaled) * DVec3::ONE;
+    rows.max_element().sqrt() * size * (1.0 + gamma(32))
+}
 
 /// `v` divided by its length, safe for lengths whose square would overflow or vanish.
 pub(crate) fn normalize(v: DVec3) -> DVec3 {

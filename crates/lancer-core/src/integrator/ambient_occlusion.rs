@@ -4,42 +4,37 @@
 //! is 1. Half of the directions have no weight and are not traced.
 
 use super::RayCounts;
-use crate::sampling::{Key, Rotation, SphereLattice};
+use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
 use crate::world::{Intersection, World};
 
 /// Estimates c_a at one point after another.
 #[derive(Clone, Debug)]
 pub struct AmbientOcclusionSampler {
-    lattice: SphereLattice,
+    lattice: HemisphereLattice,
     distance: f64,
 }
 
 impl AmbientOcclusionSampler {
     /// A sampler for N and D.
     pub fn new(settings: &AmbientOcclusion) -> Self {
-        Self { lattice: SphereLattice::new(settings.samples), distance: settings.distance }
+        Self { lattice: HemisphereLattice::new(settings.samples), distance: settings.distance }
     }
 
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
     pub fn factor(&self, world: &World, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
-        if self.lattice.is_empty() {
+        if self.lattice.samples() == 0 {
             return 1.0;
         }
-        let normal = at.facing_normal();
-        let rotation = Rotation::random(&mut key.stream());
         let mut sum = 0.0;
-        for direction in self.lattice.turned(&rotation) {
-            let weight = normal.dot(direction);
-            if weight > 0.0 {
-                counts.ao += 1;
-                let mut ray = at.spawn(direction);
-                ray.t_max = self.distance;
-                if !world.occluded(&ray) {
-                    sum += weight;
-                }
+        for fan in self.lattice.around(at.facing_normal(), &mut key.stream()) {
+            counts.ao += fan.count as u64;
+            let mut visible = fan.all() & !world.occluded_fan(at, &fan, self.distance);
+            while visible != 0 {
+                sum += fan.elevation(visible.trailing_zeros() as usize);
+                visible &= visible - 1;
             }
         }
-        4.0 * sum / self.lattice.len() as f64
+        4.0 * sum / f64::from(self.lattice.samples())
     }
 }

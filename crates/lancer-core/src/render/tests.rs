@@ -7,6 +7,7 @@ use crate::camera::Camera;
 use crate::geometry::{DVec3, Transform};
 use crate::mesh::Mesh;
 use crate::scene::{AmbientOcclusion, Material, Node, Scene, Settings, Shape};
+use crate::simd::InstructionSet;
 use crate::testing::ball;
 use crate::world::{CompileOptions, World};
 
@@ -69,11 +70,23 @@ fn image_is_identical_for_any_threads_tiles_and_accelerator() {
         assert_eq!(bits(&other), bits(&reference), "tiles of {tile_size}");
     }
     for kd in [KdSettings { leaf: Some(1), depth: None }, KdSettings { leaf: Some(50), depth: Some(4) }] {
-        let other = picture(&CompileOptions { kd, ..CompileOptions::default() }, None, 32);
+        let other = picture(&CompileOptions { accelerator: Accelerator::KdTree, kd, ..CompileOptions::default() }, None, 32);
         assert_eq!(bits(&other), bits(&reference), "{kd:?}");
     }
+    for accelerator in Accelerator::ALL {
+        let options = CompileOptions { accelerator, ..CompileOptions::default() };
+        assert_eq!(bits(&picture(&options, None, 32)), bits(&reference), "{accelerator:?}");
+    }
+}
+
+#[test]
+fn image_is_identical_for_every_instruction_set_of_this_processor() {
     let options = CompileOptions { accelerator: Accelerator::BruteForce, ..CompileOptions::default() };
-    assert_eq!(bits(&picture(&options, None, 32)), bits(&reference), "brute force");
+    let reference = bits(&picture(&options, None, 32));
+    for instructions in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
+        let options = CompileOptions { instructions: Some(instructions), ..CompileOptions::default() };
+        assert_eq!(bits(&picture(&options, None, 32)), reference, "{instructions:?}");
+    }
 }
 
 #[test]

@@ -1,13 +1,15 @@
-//! Where to sample: pixels, and the sphere of directions around a point.
+//! Where to sample: pixels, and the directions around a point.
 //!
 //! Every number is drawn from a stream that is keyed by pixel, subpixel and ray, so a picture does not depend on
 //! threads, tiles or the order of work. This room knows nothing of scenes, materials or lights.
 
+mod hemisphere;
 mod key;
-mod sphere;
 
+
+pub use hemisphere::HemisphereLattice;
 pub use key::{Branch, Key, Stream};
-pub use sphere::{Rotation, SphereLattice};
+
 
 /// The offsets of the centres of n x n subpixels from a pixel's top left corner, row by row.
 pub fn subpixel_centers(n: u32) -> impl Iterator<Item = (f64, f64)> {

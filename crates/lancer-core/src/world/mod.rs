@@ -15,6 +15,7 @@
 //! lowest object, and there of the lowest primitive.
 
 mod compile;
+mod fan;
 mod geometry;
 mod intersection;
 mod media;

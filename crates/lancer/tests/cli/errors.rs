@@ -34,6 +34,7 @@ fn wrong_flags_exit_with_2() {
         "--threads 0",
         "--threads 100000",
         "--accel magic",
+        "--instructions mmx",
         "--kd-leaf 0",
         "--kd-depth 65",
         "--tile-size 0",

@@ -1,6 +1,7 @@
 //! The flags that decide how the work is done, which no byte of the picture may show.
 
 use crate::sandbox::Sandbox;
+use lancer_core::simd::InstructionSet;
 
 const FLAGS: &str = "--samples 2 --ao 8 --depth 4";
 
@@ -26,7 +27,7 @@ fn the_picture_does_not_depend_on_the_tile_size() {
 
 #[test]
 fn the_picture_does_not_depend_on_the_accelerator_or_its_bounds() {
-    for way in ["--accel brute-force", "--accel kd-tree", "--kd-leaf 1", "--kd-depth 0", "--kd-depth 64"] {
+    for way in ["--accel brute-force", "--accel bvh", "--accel kd-tree", "--kd-leaf 1", "--kd-depth 0", "--kd-depth 64"] {
         assert_changes_nothing(way);
     }
 }
@@ -40,7 +41,17 @@ fn threads_and_accelerator_are_the_ones_asked_for() {
     let told = sandbox.json("render scene.yaml --json");
     let cores = std::thread::available_parallelism().unwrap().get();
     assert_eq!(told["threads"], cores);
+    assert_eq!(told["accelerator"], "bvh");
+    let told = sandbox.json("render scene.yaml --kd-leaf 4 --json");
     assert_eq!(told["accelerator"], "kd-tree");
+}
+
+#[test]
+fn the_picture_does_not_depend_on_the_instruction_set() {
+    let available = InstructionSet::ALL.into_iter().filter(|set| set.is_available());
+    for set in available {
+        assert_changes_nothing(&format!("--instructions {}", set.name()));
+    }
 }
 
 #[test]
@@ -51,7 +62,7 @@ fn kd_leaf_and_kd_depth_bound_the_tree() {
         let told = sandbox.json(&format!("render grid.obj --width 4 --height 4 --json {flags}"));
         (told["tree_nodes"].as_u64().unwrap(), told["tree_depth"].as_u64().unwrap())
     };
-    let (free, _) = nodes("");
+    let (free, _) = nodes("--accel kd-tree");
     let (large_leaves, _) = nodes("--kd-leaf 1000");
     assert!(large_leaves < free, "{large_leaves} nodes with large leaves, {free} without");
     let (_, depth) = nodes("--kd-depth 3");

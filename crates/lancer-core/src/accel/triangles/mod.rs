@@ -5,6 +5,7 @@
 //! exactly a ray hits: a picture is the same as if only that test had been used, on every triangle.
 
 mod block;
+mod fan;
 mod lanes;
 mod ray;
 mod single;
@@ -12,12 +13,13 @@ mod single;
 mod tests;
 mod walk;
 
+pub(crate) use fan::Receiver;
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
 use super::Aabb;
 use super::bvh::{Bvh, BuildError, Child, Quality, WideNode};
-use crate::geometry::{Bounds, Ray};
+use crate::geometry::{Bounds, DirectionFan, Ray};
 use crate::mesh::Mesh;
 use crate::shape::Hit;
 use crate::shape::triangle::Nearest;
@@ -100,6 +102,23 @@ impl TriangleTree {
             }
             Narrowed::OutOfRange => self.intersect_wide(ray).is_some(),
         }
+    }
+
+    /// Which of the directions `wanted` from a point meet a triangle; none where the numbers leave the range of
+    /// `f32`. `decide` is the canonical test of a direction and a triangle.
+    pub(crate) fn occluded_fan(
+        &self,
+        receiver: &Receiver,
+        directions: &DirectionFan,
+        wanted: u64,
+        mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
+    ) -> Option<u64> {
+        if !ray::in_range(&self.bounds, receiver.point) || !(receiver.reach > 1e-12) {
+            return None;
+        }
+        Some(dispatch!(self.level, simd => {
+            fan::occluded(simd, self, receiver, directions, wanted, &mut decide)
+        }))
     }
 
     /// The nearest hit, in `f64` throughout: for the rare ray whose numbers leave the range of `f32`.

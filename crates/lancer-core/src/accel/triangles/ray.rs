@@ -48,7 +48,7 @@ const SIZES: std::ops::Range<f64> = 1e-9..1e9;
 
 /// A component of a direction below this is as good as zero: along the ray, within bounds that are at most 4
 /// times [`SIZES`] apart relative to their size, it moves by less than the slack of the slab test.
-const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
+pub(super) const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl NarrowRay {
     /// Prepares a ray for what lies within `bounds`, which are finite and not empty.
@@ -59,7 +59,7 @@ impl NarrowRay {
         let direction = ray.direction * scale;
         let size = bounds.min.abs().max(bounds.max.abs()).max_element();
         let distance = ray.origin.abs().max_element();
-        if !(SIZES.contains(&size) && scale.is_finite() && distance < size * 1e6 && length < 1e100) {
+        if !(in_range(bounds, ray.origin) && scale.is_finite() && length < 1e100) {
             return Narrowed::OutOfRange;
         }
         // All rounding in f64, here and in the canonical test, is below this.
@@ -95,18 +95,36 @@ impl NarrowRay {
         // A slab test computes b * inverse + offset: see `margin` in the tests for the sum of its errors, which is
         // below 12 units of roundoff of |b| + |origin|, each at most `size`.
         let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
-        let offset = |axis: usize, sign: f32| -narrow[axis] * inverse[axis] + sign * margin * inverse[axis].abs();
+        let direction = narrowed(direction);
+        let ray = Self::from_narrow(narrow, rest, direction, inverse, margin, slack as f32, end as f32);
+        Self { start, scale: length, ..ray }
+    }
+
+    /// A ray whose parameter is its own t, of numbers that are known to be in range. `margin` bounds the error of
+    /// a slab test by that of a coordinate.
+    #[inline(always)]
+    pub(super) fn from_narrow(
+        origin: [f32; 3],
+        origin_rest: [f32; 3],
+        direction: [f32; 3],
+        inverse: [f32; 3],
+        margin: f32,
+        origin_error: f32,
+        end: f32,
+    ) -> Self {
+        let base = |axis: usize| -origin[axis] * inverse[axis];
+        let slack = |axis: usize| margin * inverse[axis].abs();
         Self {
-            origin: narrow,
-            origin_rest: rest,
-            direction: narrowed(direction),
+            origin,
+            origin_rest,
+            direction,
             inverse,
-            enter_offset: [offset(0, -1.0), offset(1, -1.0), offset(2, -1.0)],
-            leave_offset: [offset(0, 1.0), offset(1, 1.0), offset(2, 1.0)],
-            origin_error: slack as f32,
-            end: end as f32,
-            start,
-            scale: length,
+            enter_offset: [base(0) - slack(0), base(1) - slack(1), base(2) - slack(2)],
+            leave_offset: [base(0) + slack(0), base(1) + slack(1), base(2) + slack(2)],
+            origin_error,
+            end,
+            start: 0.0,
+            scale: 1.0,
         }
     }
 
@@ -117,6 +135,12 @@ impl NarrowRay {
         let s = (s as f32).max(0.0) * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.origin_error;
         s.min(self.end)
     }
+}
+
+/// Whether kernels can work within `bounds` on rays from `origin`.
+pub(super) fn in_range(bounds: &Bounds, origin: DVec3) -> bool {
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    SIZES.contains(&size) && origin.abs().max_element() < size * 1e6
 }
 
 /// Where a ray enters and leaves a box, from its origin on, widened by `slack`.

@@ -8,7 +8,7 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 
 /// Room for all that can wait: each level of the tree leaves seven children behind.
-const STACK: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1) + 1;
+pub(super) const STACK: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1) + 1;
 
 /// Calls `visit` with the leaves that a ray meets.
 ///
@@ -19,6 +19,18 @@ pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
     simd: S,
     nodes: &[WideNode],
     ray: &NarrowRay,
+    visit: impl FnMut(Child) -> f32,
+) {
+    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, visit);
+}
+
+/// As [`walk`], through the part of the hierarchy below `start`.
+#[inline(always)]
+pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
+    simd: S,
+    nodes: &[WideNode],
+    start: Child,
+    ray: &NarrowRay,
     mut visit: impl FnMut(Child) -> f32,
 ) {
     let inverse: [f32x8<S>; 3] = splat3(simd, ray.inverse);
@@ -28,7 +40,7 @@ pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
     let zero = f32x8::splat(simd, 0.0);
     let mut end = ray.end;
     let mut stack = ArrayVec::<(Child, f32), STACK>::new();
-    let mut current = Child::inner(0);
+    let mut current = start;
     loop {
         if current.is_leaf() {
             end = visit(current);

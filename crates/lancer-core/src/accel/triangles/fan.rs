@@ -1,0 +1,469 @@
+//! Many short rays from one point, searched together: the directions of an ambient occlusion estimate.
+//!
+//! The tree is walked once for all of them, with a bit for each direction that may still matter. What makes this
+//! faster than ray by ray is what a point and its horizon tell of a box before any direction is looked at: out of
+//! reach, below the tangent plane, or so low above it that only the directions below its highest elevation can
+//! meet it. Directions are sorted by elevation, so these are a prefix. On a smooth surface next to nothing is
+//! left of the neighbourhood, where a single ray spends most of its steps.
+//!
+//! Source of the masks: Laine, Karras, "Two methods for fast ray-cast ambient occlusion" (EGSR 2010).
+
+use super::block::{BLOCK, Block, BlockRay};
+use super::lanes::{cross, dot, load3, splat3, sub};
+use super::ray::{LEAST_COMPONENT, NarrowRay, UNIT_ROUNDOFF};
+use super::walk::{STACK, walk_from};
+use super::TriangleTree;
+use crate::accel::bvh::{Child, WIDTH};
+use crate::geometry::{DMat3, DVec3, DirectionFan};
+use arrayvec::ArrayVec;
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x4, f32x8, f32x16};
+
+const FAN: usize = DirectionFan::CAPACITY;
+
+/// Directions tested at once.
+const LANES: usize = 16;
+
+/// Where this many directions or fewer are left to a node, they go on one by one: eight boxes for one ray then do
+/// more than sixteen directions for one box, most of them idle.
+const ALONE: u32 = 4;
+
+/// A point to look around from, in the space of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Receiver {
+    /// Where the rays start.
+    pub(crate) point: DVec3,
+    /// Whose product with a direction in this space is that direction's elevation.
+    pub(crate) normal: DVec3,
+    /// Carries directions into this space, and no unit vector to one longer than 1.
+    pub(crate) from_world: DMat3,
+    /// How far the rays go, in lengths of their directions in this space.
+    pub(crate) reach: f64,
+    /// The triangle that the point lies on, which no ray that leaves it can meet.
+    pub(crate) own: Option<u32>,
+}
+
+/// The fan in `f32`, ready for a walk.
+struct Fan {
+    direction: [[f32; FAN]; 3],
+    inverse: [[f32; FAN]; 3],
+    point: [f32; 3],
+    point_rest: [f32; 3],
+    /// How far the point may lie from the true one, and all `f64` rounding.
+    error: f32,
+    /// See [`NarrowRay`].
+    margin: f32,
+    normal: [f32; 3],
+    reach: f32,
+    lowest: f32,
+    per_step: f32,
+    own: u32,
+}
+
+impl Fan {
+    #[inline(always)]
+    fn new(receiver: &Receiver, directions: &DirectionFan, size: f64) -> Self {
+        let point = receiver.point;
+        let size = size.max(point.abs().max_element());
+        let error = size * (1024.0 * f64::EPSILON);
+        let mut direction = [[0.0; FAN]; 3];
+        let mut inverse = [[0.0; FAN]; 3];
+        let columns = receiver.from_world.to_cols_array();
+        let [x, y, z] = &directions.components;
+        for axis in 0..3 {
+            let (a, b, c) = (columns[axis], columns[3 + axis], columns[6 + axis]);
+            for i in 0..FAN {
+                let component = a * x[i] + b * y[i] + c * z[i];
+                direction[axis][i] = component as f32;
+                inverse[axis][i] = (1.0 / component.abs().max(LEAST_COMPONENT).copysign(component)) as f32;
+            }
+        }
+        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
+        let hi = narrow(point);
+        let wide = DVec3::new(f64::from(hi[0]), f64::from(hi[1]), f64::from(hi[2]));
+        Self {
+            direction,
+            inverse,
+            point: hi,
+            point_rest: narrow(point - wide),
+            error: error as f32,
+            margin: 24.0 * UNIT_ROUNDOFF * size as f32 + error as f32,
+            normal: narrow(receiver.normal),
+            reach: (receiver.reach.min(1e3 * size) * (1.0 + 1e-6)) as f32,
+            lowest: directions.lowest as f32,
+            per_step: (1.0 / directions.step) as f32,
+            own: receiver.own.unwrap_or(u32::MAX),
+        }
+    }
+
+    /// The directions that are not above an elevation; more where rounding leaves it open.
+    #[inline(always)]
+    fn up_to(&self, elevation: f32) -> u64 {
+        let count = (elevation * (1.0 + 1e-5) - self.lowest) * self.per_step + 1.01;
+        // Negative numbers become 0; so does what is not a number, which cannot be.
+        let count = count.min(FAN as f32) as u32;
+        if count == 0 { 0 } else { u64::MAX >> (FAN as u32 - count) }
+    }
+
+    /// One direction as a ray.
+    #[inline(always)]
+    fn ray(&self, i: usize) -> NarrowRay {
+        let of = |v: &[[f32; FAN]; 3]| [v[0][i], v[1][i], v[2][i]];
+        NarrowRay::from_narrow(
+            self.point,
+            self.point_rest,
+            of(&self.direction),
+            of(&self.inverse),
+            self.margin,
+            self.error,
+            self.reach,
+        )
+    }
+}
+
+/// Which of the directions `wanted` meet a triangle of `tree`.
+///
+/// `decide` is the canonical test of a direction and a triangle, for what is too close to tell.
+#[inline(always)]
+pub(super) fn occluded<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    receiver: &Receiver,
+    directions: &DirectionFan,
+    wanted: u64,
+    mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
+) -> u64 {
+    let size = tree.bounds.min.abs().max(tree.bounds.max.abs()).max_element();
+    let fan = &Fan::new(receiver, directions, size);
+    let mut open = wanted;
+    let mut stack = ArrayVec::<(Child, u64), STACK>::new();
+    stack.push((Child::inner(0), wanted));
+    while let Some((child, mask)) = stack.pop() {
+        let mask = mask & open;
+        if mask == 0 {
+            continue;
+        }
+        if child.is_leaf() {
+            let mut left = child.count();
+            for block in &tree.blocks[child.first()..child.first() + left.div_ceil(BLOCK)] {
+                let hit = block_of_fan(simd, fan, block, left.min(BLOCK), mask & open, &mut decide);
+                open &= !hit;
+                left = left.saturating_sub(BLOCK);
+            }
+        } else if mask.count_ones() <= ALONE {
+            let mut rest = mask;
+            while rest != 0 {
+                let i = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                if alone(simd, tree, fan, child, i, &mut decide) {
+                    open &= !(1 << i);
+                }
+            }
+        } else {
+            node_of_fan(simd, fan, tree, child, mask, &mut stack);
+        }
+        if open == 0 {
+            break;
+        }
+    }
+    wanted & !open
+}
+
+/// Adds the children of a node that some directions may meet.
+#[inline(always)]
+fn node_of_fan<S: Simd>(
+    simd: S,
+    fan: &Fan,
+    tree: &TriangleTree,
+    parent: Child,
+    mask: u64,
+    stack: &mut ArrayVec<(Child, u64), STACK>,
+) {
+    let node = &tree.nodes[parent.node()];
+    let splat = |x: f32| f32x8::splat(simd, x);
+    let zero = splat(0.0);
+    let point: [f32x8<S>; 3] = splat3(simd, fan.point);
+    let below: [f32x8<S>; 3] = splat3(simd, fan.rest(fan.error));
+    let above: [f32x8<S>; 3] = splat3(simd, fan.rest(-fan.error));
+    let min: [f32x8<S>; 3] = load3(simd, &node.min);
+    let max: [f32x8<S>; 3] = load3(simd, &node.max);
+    // The boxes as seen from the point, enlarged by its error.
+    let mut low = sub(sub(min, point), below);
+    let mut high = sub(sub(max, point), above);
+    let spread = low[0].abs().max(low[1].abs()).max(low[2].abs()).max(high[0].abs()).max(high[1].abs()).max(high[2].abs());
+    // Enlarged by all rounding of this and of the slab test below, which is relative to their distance.
+    let slack = spread * (8.0 * UNIT_ROUNDOFF);
+    low = [low[0] - slack, low[1] - slack, low[2] - slack];
+    high = [high[0] + slack, high[1] + slack, high[2] + slack];
+    let outside = [low[0].max(-high[0]).max(zero), low[1].max(-high[1]).max(zero), low[2].max(-high[2]).max(zero)];
+    let squared = dot(outside, outside);
+    let top = |axis: usize| if fan.normal[axis] < 0.0 { low[axis] } else { high[axis] };
+    let normal: [f32x8<S>; 3] = splat3(simd, fan.normal);
+    let height = dot(normal, [top(0), top(1), top(2)]) + slack * 2.0;
+    let near = squared.simd_le(splat(fan.reach * fan.reach * (1.0 + 1e-5)));
+    let mut met = (near & height.simd_gt(zero)).to_bitmask() as u32;
+    if met == 0 {
+        return;
+    }
+    let elevation = height / squared.sqrt();
+    // A box around the point concerns every direction.
+    let around = squared.simd_le(zero);
+    let elevation: [f32; WIDTH] = around.select(splat(2.0), elevation).into();
+    let around = around.to_bitmask() as u32;
+    let low: [[f32; WIDTH]; 3] = [low[0].into(), low[1].into(), low[2].into()];
+    let high: [[f32; WIDTH]; 3] = [high[0].into(), high[1].into(), high[2].into()];
+    while met != 0 {
+        let child = met.trailing_zeros() as usize;
+        met &= met - 1;
+        let mut candidates = mask & fan.up_to(elevation[child]);
+        if around >> child & 1 == 0 {
+            let corner = |side: &[[f32; WIDTH]; 3]| [side[0][child], side[1][child], side[2][child]];
+            candidates = slab(simd, fan, corner(&low), corner(&high), candidates);
+        }
+        if candidates != 0 {
+            stack.push((node.children[child], candidates));
+        }
+    }
+}
+
+/// Which of the directions meet a box, given as seen from the point.
+#[inline(always)]
+fn slab<S: Simd>(simd: S, fan: &Fan, low: [f32; 3], high: [f32; 3], candidates: u64) -> u64 {
+    let splat = |x: f32| f32x16::splat(simd, x);
+    let mut met = 0;
+    let mut group = 0;
+    while candidates >> (group * LANES) != 0 {
+        let bits = candidates >> (group * LANES) & 0xffff;
+        if bits != 0 {
+            let inverse: [f32x16<S>; 3] = group3(simd, &fan.inverse, group);
+            let (a, b) = (inverse[0] * low[0], inverse[0] * high[0]);
+            let (c, d) = (inverse[1] * low[1], inverse[1] * high[1]);
+            let (e, f) = (inverse[2] * low[2], inverse[2] * high[2]);
+            let enter = a.min(b).max(c.min(d)).max(e.min(f).max(splat(0.0)));
+            let leave = a.max(b).min(c.max(d)).min(e.max(f).min(splat(fan.reach)));
+            met |= (enter.simd_le(leave).to_bitmask() & bits) << (group * LANES);
+        }
+        group += 1;
+        if group == FAN / LANES {
+            break;
+        }
+    }
+    met
+}
+
+/// Which of the directions meet a triangle of a block.
+#[inline(always)]
+fn block_of_fan<S: Simd>(
+    simd: S,
+    fan: &Fan,
+    block: &Block,
+    count: usize,
+    mask: u64,
+    decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
+) -> u64 {
+    let splat = |x: f32| f32x4::splat(simd, x);
+    let zero = splat(0.0);
+    let point: [f32x4<S>; 3] = splat3(simd, fan.point);
+    let rest: [f32x4<S>; 3] = splat3(simd, fan.point_rest);
+    let normal: [f32x4<S>; 3] = splat3(simd, fan.normal);
+    let corner = |i: usize| sub(sub(load3(simd, &block.corners[i]), point), rest);
+    let (a, b, c): ([f32x4<S>; 3], [f32x4<S>; 3], [f32x4<S>; 3]) = (corner(0), corner(1), corner(2));
+    let size = largest(a).max(largest(b)).max(largest(c));
+    let slack = size * (16.0 * UNIT_ROUNDOFF) + fan.error * 2.0;
+    let (ha, hb, hc) = (dot(normal, a), dot(normal, b), dot(normal, c));
+    let above = (ha.max(hb).max(hc) + slack).simd_gt(zero).to_bitmask() as u32;
+    let mut triangles = above & ((1 << count) - 1);
+    if triangles == 0 {
+        return 0;
+    }
+    // The planes through the point and an edge: a direction passes the triangle inside of all three, or outside.
+    let (ab, bc, ca) = (cross(a, b), cross(b, c), cross(c, a));
+    let elevation: [f32; BLOCK] = highest(simd, fan, [a, b, c], [ha, hb, hc], [ab, bc, ca]).into();
+    let error = size * (size * (64.0 * UNIT_ROUNDOFF) + fan.error * 16.0);
+    let volume = dot(a, bc);
+    let volume_error = size * error * 2.0;
+    let edges: [[[f32; BLOCK]; 3]; 3] = [
+        [ab[0].into(), ab[1].into(), ab[2].into()],
+        [bc[0].into(), bc[1].into(), bc[2].into()],
+        [ca[0].into(), ca[1].into(), ca[2].into()],
+    ];
+    let mut hit = 0;
+    while triangles != 0 {
+        let lane = triangles.trailing_zeros() as usize;
+        triangles &= triangles - 1;
+        if block.ids[lane] == fan.own {
+            continue;
+        }
+        let candidates = mask & !hit & fan.up_to(elevation[lane]);
+        let edge = |i: usize| [edges[i][0][lane], edges[i][1][lane], edges[i][2][lane]];
+        let cone = Cone {
+            edges: [edge(0), edge(1), edge(2)],
+            error: error[lane],
+            volume: volume[lane],
+            volume_error: volume_error[lane],
+        };
+        let (sure, mut unsure) = cone.test(simd, fan, candidates);
+        hit |= sure;
+        while unsure != 0 {
+            let i = unsure.trailing_zeros() as usize;
+            unsure &= unsure - 1;
+            if decide(i, &block.triangle(lane)) {
+                hit |= 1 << i;
+            }
+        }
+    }
+    hit
+}
+
+/// A bound on the elevation of any point of each triangle: that of its highest corner, or of the highest point of
+/// an edge, which may stand above both of its ends as seen on the sphere of directions.
+#[inline(always)]
+fn highest<S: Simd>(
+    simd: S,
+    fan: &Fan,
+    [a, b, c]: [[f32x4<S>; 3]; 3],
+    [ha, hb, hc]: [f32x4<S>; 3],
+    [ab, bc, ca]: [[f32x4<S>; 3]; 3],
+) -> f32x4<S> {
+    let splat = |x: f32| f32x4::splat(simd, x);
+    let zero = splat(0.0);
+    let normal: [f32x4<S>; 3] = splat3(simd, fan.normal);
+    let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
+    let corner = |h: f32x4<S>, square: f32x4<S>| {
+        let h = h.max(zero);
+        h * h / square
+    };
+    let square_of_normal = dot(normal, normal);
+    let edge = |plane: [f32x4<S>; 3], x: [f32x4<S>; 3], y: [f32x4<S>; 3], [hx, hy, xx, yy]: [f32x4<S>; 4]| {
+        let along = dot(plane, normal);
+        let top = square_of_normal - along * along / dot(plane, plane);
+        let xy = dot(x, y);
+        // The elevation rises from both ends: the highest point of the great circle lies between them.
+        let between = (hy * xx).simd_gt(hx * xy) & (hx * yy).simd_gt(hy * xy);
+        between.select(top, zero)
+    };
+    let squared = corner(ha, aa)
+        .max(corner(hb, bb))
+        .max(corner(hc, cc))
+        .max(edge(ab, a, b, [ha, hb, aa, bb]))
+        .max(edge(bc, b, c, [hb, hc, bb, cc]))
+        .max(edge(ca, c, a, [hc, ha, cc, aa]));
+    let (u, v, w) = (dot(ab, normal), dot(bc, normal), dot(ca, normal));
+    let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+    let overhead = least.simd_ge(zero) | most.simd_le(zero);
+    // A corner so near that its direction is not known, or a plane that is none.
+    let blurred = aa.min(bb).min(cc).simd_le(splat(fan.error * fan.error * 1e9));
+    let known = squared.simd_ge(zero) & squared.simd_lt(splat(4.0));
+    let elevation = (squared + 4e-6).sqrt() + 1e-4;
+    ((overhead | blurred) | !known).select(splat(2.0), elevation)
+}
+
+/// A triangle as seen from the point.
+struct Cone {
+    edges: [[f32; 3]; 3],
+    error: f32,
+    /// Six times the volume between the point and the triangle, and its error.
+    volume: f32,
+    volume_error: f32,
+}
+
+impl Cone {
+    /// The directions that meet the triangle for sure, and those for which it is too close to tell.
+    #[inline(always)]
+    fn test<S: Simd>(&self, simd: S, fan: &Fan, candidates: u64) -> (u64, u64) {
+        let splat = |x: f32| f32x16::splat(simd, x);
+        let (mut sure, mut unsure) = (0, 0);
+        let mut group = 0;
+        while candidates >> (group * LANES) != 0 {
+            let bits = candidates >> (group * LANES) & 0xffff;
+            if bits != 0 {
+                let direction: [f32x16<S>; 3] = group3(simd, &fan.direction, group);
+                let side = |edge: &[f32; 3]| dot(direction, splat3(simd, *edge));
+                let (u, v, w) = (side(&self.edges[0]), side(&self.edges[1]), side(&self.edges[2]));
+                let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+                let inside = least.simd_ge(splat(-self.error)) | most.simd_le(splat(self.error));
+                let maybe = inside.to_bitmask() & bits;
+                if maybe != 0 {
+                    let determinant = u + v + w;
+                    let size = determinant.abs();
+                    let negative = determinant.simd_lt(splat(0.0));
+                    let volume = negative.select(splat(-self.volume), splat(self.volume));
+                    let limit = size * fan.reach;
+                    let slack = limit * (8.0 * UNIT_ROUNDOFF) + (self.error * 4.0 * fan.reach + self.volume_error);
+                    let ahead = volume.simd_ge(splat(-self.volume_error)) & (limit - volume).simd_ge(-slack);
+                    let vanishing = size.simd_le(splat(self.error * 4.0));
+                    let maybe = maybe & (ahead | vanishing).to_bitmask();
+                    let clear = least.simd_gt(splat(self.error)) | most.simd_lt(splat(-self.error));
+                    // The reach is rounded up, by less than a part in 10^5.
+                    let short = (limit * (1.0 - 1e-5) - volume).simd_gt(slack);
+                    let certain = clear & volume.simd_gt(splat(self.volume_error)) & short & !vanishing;
+                    let certain = certain.to_bitmask() & maybe;
+                    sure |= certain << (group * LANES);
+                    unsure |= (maybe & !certain) << (group * LANES);
+                }
+            }
+            group += 1;
+            if group == FAN / LANES {
+                break;
+            }
+        }
+        (sure, unsure)
+    }
+}
+
+/// One direction through the part of the tree below `start`.
+#[inline(always)]
+fn alone<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    fan: &Fan,
+    start: Child,
+    i: usize,
+    decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
+) -> bool {
+    let ray = fan.ray(i);
+    let block_ray = BlockRay::new(simd, &ray);
+    let sure_end = fan.reach * (1.0 - 1e-5);
+    let mut found = false;
+    walk_from::<S, false>(simd, &tree.nodes, start, &ray, |leaf| {
+        let mut left = leaf.count();
+        for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
+            let verdict = block.test(simd, &block_ray, left.min(BLOCK), ray.end);
+            let mut maybe = verdict.maybe;
+            while maybe != 0 {
+                let lane = maybe.trailing_zeros() as usize;
+                maybe &= maybe - 1;
+                if block.ids[lane] == fan.own {
+                    continue;
+                }
+                let sure = verdict.sure >> lane & 1 == 1 && verdict.latest(lane) < sure_end;
+                if sure || decide(i, &block.triangle(lane)) {
+                    found = true;
+                    return -1.0;
+                }
+            }
+            left = left.saturating_sub(BLOCK);
+        }
+        ray.end
+    });
+    found
+}
+
+impl Fan {
+    /// The remainder of the point, moved by `offset` on each axis.
+    #[inline(always)]
+    fn rest(&self, offset: f32) -> [f32; 3] {
+        [self.point_rest[0] + offset, self.point_rest[1] + offset, self.point_rest[2] + offset]
+    }
+}
+
+#[inline(always)]
+fn group3<S: Simd>(simd: S, v: &[[f32; FAN]; 3], group: usize) -> [f32x16<S>; 3] {
+    let of = |axis: usize| f32x16::from_slice(simd, &v[axis][group * LANES..(group + 1) * LANES]);
+    [of(0), of(1), of(2)]
+}
+
+#[inline(always)]
+fn largest<S: Simd>([x, y, z]: [f32x4<S>; 3]) -> f32x4<S> {
+    x.abs().max(y.abs()).max(z.abs())
+}

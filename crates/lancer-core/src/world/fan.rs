@@ -1,0 +1,155 @@
+//! Many short rays from one point.
+
+use super::geometry::{Geometry, TriangleIndex};
+use super::{Intersection, Object, ObjectId, ObjectIndex, World};
+use crate::accel::triangles::Receiver;
+use crate::geometry::{Bounds, DVec3, DirectionFan, Ray};
+use crate::shape::triangle::Canonical;
+
+impl World {
+    /// Which of the rays that leave a surface in the directions of a fan meet anything nearer than `reach`: a bit
+    /// for each. The fan's normal must be [`Intersection::facing_normal`].
+    ///
+    /// The answer for each direction is that of [`World::occluded`] for `at.spawn(direction)`; it is only found
+    /// faster.
+    pub fn occluded_fan(&self, at: &Intersection, fan: &DirectionFan, reach: f64) -> u64 {
+        let wanted = fan.all();
+        let mut occluded = 0;
+        // An interpolated normal may have directions above it that go below the surface: their rays start on the
+        // other side of it.
+        let mut together = 0;
+        for i in 0..fan.count {
+            let beneath = at.geometric_normal.dot(fan.direction(i)) < 0.0;
+            together |= u64::from(beneath == at.from_inside) << i;
+        }
+        let by_objects = match &self.index {
+            ObjectIndex::Bvh { .. } => true,
+            ObjectIndex::Kd(_) | ObjectIndex::None => false,
+        };
+        if !by_objects {
+            together = 0;
+        }
+        for i in bits(wanted & !together) {
+            let ray = Ray { t_max: reach, ..at.spawn(fan.direction(i)) };
+            occluded |= u64::from(self.occluded(&ray)) << i;
+        }
+        if let Some(first) = bits(together).next() {
+            let rays = FanRays { origin: at.spawn(fan.direction(first)).origin, fan, reach, at };
+            let mut open = together;
+            for &id in &self.unbounded {
+                open &= !self.occluded_by(id, &rays, open);
+            }
+            self.visit_near(&rays, |id| {
+                open &= !self.occluded_by(id, &rays, open);
+                open != 0
+            });
+            occluded |= together & !open;
+        }
+        occluded
+    }
+
+    /// Which of the rays `wanted` an object stops.
+    fn occluded_by(&self, id: ObjectId, rays: &FanRays, wanted: u64) -> u64 {
+        if wanted == 0 {
+            return 0;
+        }
+        let object = self.object(id);
+        if let Geometry::Mesh(mesh) = object.geometry
+            && let TriangleIndex::Bvh(tree) = &self.meshes[mesh as usize].index
+            && let Some(receiver) = rays.receiver(id, object)
+        {
+            let decide = |i: usize, triangle: &[[f32; 3]; 3]| {
+                Canonical::new(&object.placement.ray_to_object(&rays.ray(i))).hits(triangle)
+            };
+            if let Some(occluded) = tree.occluded_fan(&receiver, rays.fan, wanted, decide) {
+                return occluded;
+            }
+        }
+        let mut occluded = 0;
+        for i in bits(wanted) {
+            let ray = object.placement.ray_to_object(&rays.ray(i));
+            occluded |= u64::from(object.geometry.occluded(&ray, &self.meshes)) << i;
+        }
+        occluded
+    }
+
+    /// Calls `visit` with the bounded objects whose boxes are in reach and above the horizon, until it says no.
+    fn visit_near(&self, rays: &FanRays, mut visit: impl FnMut(ObjectId) -> bool) {
+        let ObjectIndex::Bvh { tree, .. } = &self.index else { return };
+        let mut stack = vec![0];
+        while let Some(index) = stack.pop() {
+            let node = &tree.nodes()[index];
+            for place in 0..node.children.len() {
+                let child = node.child(place);
+                if child.is_none() || !rays.may_meet(&node.bounds(place).to_bounds()) {
+                    continue;
+                }
+                if child.is_leaf() {
+                    for &object in &tree.order()[child.first()..child.first() + child.count()] {
+                        if !visit(self.bounded[object as usize]) {
+                            return;
+                        }
+                    }
+                } else {
+                    stack.push(child.node());
+                }
+            }
+        }
+    }
+}
+
+/// A fan where it starts.
+struct FanRays<'a> {
+    origin: DVec3,
+    fan: &'a DirectionFan,
+    reach: f64,
+    at: &'a Intersection,
+}
+
+impl FanRays<'_> {
+    fn ray(&self, i: usize) -> Ray {
+        Ray { origin: self.origin, direction: self.fan.direction(i), t_max: self.reach }
+    }
+
+    /// The same in an object's space; none where that is stretched too much for bounds on lengths to be of use.
+    fn receiver(&self, id: ObjectId, object: &Object) -> Option<Receiver> {
+        let placement = &object.placement;
+        let (shortest, longest) = placement.stretch_to_object();
+        if !(shortest * 100.0 > longest) {
+            return None;
+        }
+        let scale = 1.0 / longest;
+        Some(Receiver {
+            point: placement.point_to_object(self.origin),
+            normal: placement.covector_to_object(self.at.facing_normal()) * longest,
+            from_world: placement.object_from_world() * scale,
+            reach: self.reach * longest,
+            own: (self.at.object == id).then_some(self.at.primitive),
+        })
+    }
+
+    /// Whether any part of a box is in reach and above the horizon; never false where a ray meets it.
+    fn may_meet(&self, bounds: &Bounds) -> bool {
+        let slack = (bounds.magnitude() + self.origin.abs()) * (64.0 * f64::EPSILON);
+        let low = bounds.min - slack - self.origin;
+        let high = bounds.max + slack - self.origin;
+        let outside = low.max(-high).max(DVec3::ZERO);
+        if outside.length_squared() * (1.0 - 1e-12) > self.reach * self.reach {
+            return false;
+        }
+        let normal = self.at.facing_normal();
+        let top = (normal * low).max(normal * high);
+        top.element_sum() + slack.element_sum() >= 0.0
+    }
+}
+
+/// The places of the bits that are set.
+fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (mask != 0).then(|| {
+            let place = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            place
+        })
+    })
+}
