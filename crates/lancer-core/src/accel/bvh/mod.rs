@@ -75,8 +75,7 @@ impl Bvh {
         if count > Self::MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives { count });
         }
-        let _ = quality;
-        let grown = grow::grow(boxes);
+        let grown = grow::grow(boxes, quality);
         Ok(collapse::collapse(grown))
     }
 

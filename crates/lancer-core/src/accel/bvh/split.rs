@@ -1,5 +1,6 @@
 //! Where to part a range: at the border of bins, or between any two neighbours, with the least expected cost.
 
+use super::Quality;
 use super::cost::leaf_cost;
 use super::extent::{Extent, around, around_centers};
 use glam::Vec4;
@@ -40,6 +41,16 @@ impl<const BINS: usize> Grid<BINS> {
         let [x, y, z, _] = (places + Vec4::splat(ROUNDER)).to_array();
         [x, y, z].map(|x| x.to_bits() as usize % BINS)
     }
+
+    /// The bin of a box on one axis: the same.
+    #[inline(always)]
+    fn place(&self, item: &Extent, axis: usize) -> usize {
+        let place = ((item.low[axis] - item.high[axis]) - self.origin[axis]) * self.scale[axis];
+        let place = if place > 0.0 { place } else { 0.0 };
+        let last = (BINS - 1) as f32;
+        let place = if place < last { place } else { last };
+        (place + ROUNDER).to_bits() as usize % BINS
+    }
 }
 
 /// The border below `bin` of an axis.
@@ -59,17 +70,31 @@ pub(super) struct Parts {
 }
 
 /// Reorders more than one item into two parts. Equal halves where no place is better than any other.
-///
-/// Fewer bins miss good borders, more cost time in every node; small ranges have few places to be parted at.
-pub(super) fn part(items: &mut [Extent]) -> Parts {
-    let parts = match items.len() {
-        0..=8 => part_swept::<8>(items),
-        9..=16 => part_swept::<16>(items),
-        17..64 => part_binned::<8>(items),
-        64..512 => part_binned::<16>(items),
-        _ => part_binned::<32>(items),
+pub(super) fn part(items: &mut [Extent], quality: Quality) -> Parts {
+    let centers = around_centers(items);
+    let parts = match quality {
+        Quality::High => part_along(items, &centers, [0, 1, 2]),
+        Quality::Fast => part_along(items, &centers, [longest(&centers)]),
     };
     parts.unwrap_or_else(|| halves(items, items.len() / 2))
+}
+
+/// Tries some of the axes.
+///
+/// Fewer bins miss good borders, more cost time in every node; small ranges have few places to be parted at.
+#[inline(always)]
+fn part_along<const A: usize>(items: &mut [Extent], centers: &Extent, axes: [usize; A]) -> Option<Parts> {
+    match items.len() {
+        0..=8 => part_swept::<8, A>(items, axes),
+        9..=16 => part_swept::<16, A>(items, axes),
+        17..64 => part_binned::<8, A>(items, centers, axes),
+        64..512 => part_binned::<16, A>(items, centers, axes),
+        _ => part_binned::<32, A>(items, centers, axes),
+    }
+}
+
+fn longest(centers: &Extent) -> usize {
+    centers.sides().truncate().max_position()
 }
 
 fn halves(items: &[Extent], length: usize) -> Parts {
@@ -80,49 +105,61 @@ fn halves(items: &[Extent], length: usize) -> Parts {
 /// Reorders items into two parts of the same number, by their centres on the longest axis.
 pub(super) fn part_at_median(items: &mut [Extent]) -> Parts {
     let half = items.len() / 2;
-    let axis = around_centers(items).sides().truncate().max_position();
+    let axis = longest(&around_centers(items));
     items.select_nth_unstable_by(half, |a, b| a.center()[axis].total_cmp(&b.center()[axis]));
     halves(items, half)
 }
 
-fn part_binned<const BINS: usize>(items: &mut [Extent]) -> Option<Parts> {
-    let grid = Grid::<BINS>::new(&around_centers(items));
-    let (border, bounds) = best_border(items, &grid)?;
+fn part_binned<const BINS: usize, const A: usize>(
+    items: &mut [Extent],
+    centers: &Extent,
+    axes: [usize; A],
+) -> Option<Parts> {
+    let grid = Grid::<BINS>::new(centers);
+    let (border, bounds) = best_border(items, &grid, axes)?;
     let mut length = 0;
     for i in 0..items.len() {
         // Without a branch, which would be taken half of the time.
-        let below = grid.places(&items[i])[border.axis] < border.bin;
+        let below = grid.place(&items[i], border.axis) < border.bin;
         items.swap(i, length);
         length += usize::from(below);
     }
     Some(Parts { length, bounds })
 }
 
-fn best_border<const BINS: usize>(items: &[Extent], grid: &Grid<BINS>) -> Option<(Border, [Extent; 2])> {
-    let mut boxes = [[Extent::EMPTY; 3]; BINS];
-    let mut weights = [[0_u32; 3]; BINS];
+fn best_border<const BINS: usize, const A: usize>(
+    items: &[Extent],
+    grid: &Grid<BINS>,
+    axes: [usize; A],
+) -> Option<(Border, [Extent; 2])> {
+    let mut boxes = [[Extent::EMPTY; A]; BINS];
+    let mut weights = [[0_u32; A]; BINS];
     for item in items {
-        let [x, y, z] = grid.places(item);
-        for (axis, place) in [(0, x), (1, y), (2, z)] {
+        let places = if A == 3 {
+            axes.map(|axis| grid.places(item)[axis])
+        } else {
+            axes.map(|axis| grid.place(item, axis))
+        };
+        for (axis, place) in places.into_iter().enumerate() {
             boxes[place][axis] = boxes[place][axis].union(item);
             weights[place][axis] += item.weight();
         }
     }
-    let mut above = [[0.0; 3]; BINS];
-    let (mut rest, mut weight) = ([Extent::EMPTY; 3], [0; 3]);
+    let mut above = [[0.0; A]; BINS];
+    let (mut rest, mut weight) = ([Extent::EMPTY; A], [0; A]);
     for bin in (1..BINS).rev() {
-        for axis in 0..3 {
+        for axis in 0..A {
             rest[axis] = rest[axis].union(&boxes[bin][axis]);
             weight[axis] += weights[bin][axis];
             above[bin][axis] = rest[axis].half_area() * leaf_cost(weight[axis]);
         }
     }
-    let total: [u32; 3] = std::array::from_fn(|axis| weight[axis] + weights[0][axis]);
-    let (mut rest, mut weight) = ([Extent::EMPTY; 3], [0; 3]);
+    let total: [u32; A] = std::array::from_fn(|axis| weight[axis] + weights[0][axis]);
+    let (mut rest, mut weight) = ([Extent::EMPTY; A], [0; A]);
     let mut best = None;
     let mut least = f32::INFINITY;
     for bin in 1..BINS {
-        for axis in 0..3 {
+        for axis in 0..A {
             rest[axis] = rest[axis].union(&boxes[bin - 1][axis]);
             weight[axis] += weights[bin - 1][axis];
             let cost = rest[axis].half_area() * leaf_cost(weight[axis]) + above[bin][axis];
@@ -134,15 +171,20 @@ fn best_border<const BINS: usize>(items: &[Extent], grid: &Grid<BINS>) -> Option
         }
     }
     let Border { axis, bin } = best?;
-    let around = |bins: &[[Extent; 3]]| bins.iter().fold(Extent::EMPTY, |sum, bin| sum.union(&bin[axis]));
-    Some((Border { axis, bin }, [around(&boxes[..bin]), around(&boxes[bin..])]))
+    let around = |bins: &[[Extent; A]]| bins.iter().fold(Extent::EMPTY, |sum, bin| sum.union(&bin[axis]));
+    Some((Border { axis: axes[axis], bin }, [around(&boxes[..bin]), around(&boxes[bin..])]))
 }
 
-/// The items by centre on each axis, the first in the lowest place.
-fn sorted<const N: usize>(items: &[Extent; N], length: usize) -> [[u8; N]; 3] {
-    let mut keys = [[i32::MAX; N]; 3];
+/// The items by centre on some axes, the first in the lowest place.
+fn sorted<const N: usize, const A: usize>(
+    items: &[Extent; N],
+    length: usize,
+    axes: [usize; A],
+) -> [[u8; N]; A] {
+    let mut keys = [[i32::MAX; N]; A];
     for (i, item) in items.iter().enumerate().take(length) {
-        for (keys, x) in keys.iter_mut().zip(item.center().to_array()) {
+        let center = item.center().to_array();
+        for (keys, x) in keys.iter_mut().zip(axes.map(|axis| center[axis])) {
             // Ordered as the numbers are; the last bits give way to the place, so that no two are equal.
             let bits = x.to_bits() as i32;
             keys[i] = (bits ^ (bits >> 31 & i32::MAX)) & !(N as i32 - 1) | i as i32;
@@ -163,11 +205,11 @@ fn sorted<const N: usize>(items: &[Extent; N], length: usize) -> [[u8; N]; 3] {
     })
 }
 
-fn part_swept<const N: usize>(items: &mut [Extent]) -> Option<Parts> {
+fn part_swept<const N: usize, const A: usize>(items: &mut [Extent], axes: [usize; A]) -> Option<Parts> {
     let length = items.len();
     let mut local = [Extent::EMPTY; N];
     local[..length].copy_from_slice(items);
-    let orders = sorted(&local, length);
+    let orders = sorted(&local, length, axes);
     let mut best = None;
     let mut least = f32::INFINITY;
     for order in &orders {
