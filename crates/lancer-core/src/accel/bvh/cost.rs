@@ -6,8 +6,9 @@ use super::{Bvh, WIDTH};
 pub(super) const NODE_COST: f32 = 1.0;
 
 /// Cost of a test against a block of up to [`BLOCK`] primitives of a leaf at once. Less gives fewer nodes with
-/// fuller leaves; more splits leaves wherever their boxes shrink. Untuned.
-pub(super) const BLOCK_COST: f32 = 1.0;
+/// fuller leaves. On a scanned mesh 1 takes 15.0 bytes a triangle, 0.75 takes 13.9 for 1 % fewer steps and 4 % more
+/// blocks; not yet tuned by time.
+pub(super) const BLOCK_COST: f32 = 0.75;
 
 /// Primitives tested at once. Leaves fill blocks: nodes of this many primitives are not split.
 pub(super) const BLOCK: usize = 4;

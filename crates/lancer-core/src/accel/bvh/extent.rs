@@ -15,6 +15,11 @@ pub(super) struct Extent {
 /// Keeps names and numbers from being subnormal, which arithmetic is slow on, and from being no number.
 const LABEL: u32 = 1 << 30;
 
+/// Areas from here on are alike. The sum over all primitives is still a number.
+const MOST: f32 = 1e29;
+/// Areas below this are alike.
+const LEAST: f32 = 1e-30;
+
 impl Extent {
     pub(super) const EMPTY: Self = Self { low: Vec4::INFINITY, high: Vec4::INFINITY };
 
@@ -68,11 +73,13 @@ impl Extent {
         -(self.low + self.high)
     }
 
-    /// Half of the area of the surface.
+    /// Half of the area of the surface, kept away from 0 and infinity: where all boxes are points or too large to
+    /// be measured, the number of primitives still decides.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {
         let [x, y, z, _] = self.sides().to_array();
-        x * y + y * z + z * x
+        let area = x * y + y * z + z * x;
+        (if area < MOST { area } else { MOST }) + LEAST
     }
 
     pub(super) fn to_aabb(self) -> Aabb {

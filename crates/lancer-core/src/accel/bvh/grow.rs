@@ -3,23 +3,27 @@
 //! Large ranges are first sorted into the cells of a lattice, and parted by cells until few are left in a range;
 //! those small ranges are then parted by primitives, each on its own.
 
-use super::Bvh;
 use super::binary::{Binary, Choice, Costs, inner, leaf};
 use super::cost::BLOCK;
 use super::extent::{Extent, around};
 use super::lattice::Cells;
 use super::split::{Parts, part, part_at_median};
+use super::{Bvh, Quality};
 use crate::accel::Aabb;
 use rayon::prelude::*;
 
 /// Ranges above this size are sorted into cells.
 const LARGE: usize = 1 << 15;
 
+/// Primitives for each cell of a lattice, empty ones included; on surfaces most are empty. Less makes tables that do
+/// not fit caches, which costs more time than it saves; more leaves coarse borders to part at.
+const PRIMITIVES_PER_CELL: usize = 8;
+
 /// Ranges of fewer cells are parted by primitives: the borders of cells are too few.
-const FEW_CELLS: usize = 64;
+const FEW_CELLS: usize = 32;
 
 /// Ranges of fewer primitives are parted by primitives.
-const FEW_PRIMITIVES: usize = 1 << 10;
+const FEW_PRIMITIVES: usize = 512;
 
 /// A binary tree in pieces, and its primitives from leaf to leaf.
 pub(super) struct Grown {
@@ -28,12 +32,13 @@ pub(super) struct Grown {
     pub(super) order: Vec<u32>,
 }
 
-pub(super) fn grow(boxes: &[Aabb]) -> Grown {
+pub(super) fn grow(boxes: &[Aabb], quality: Quality) -> Grown {
     if boxes.is_empty() {
         return Grown { pieces: Vec::new(), order: Vec::new() };
     }
     let mut items = vec![Extent::EMPTY; boxes.len()];
-    let tree = range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
+    let grower = Grower { quality };
+    let tree = grower.range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
     let order = items.par_iter().with_min_len(1 << 14).map(Extent::name).collect();
     let mut pieces = vec![Vec::new()];
     let mut crown = Vec::new();
@@ -72,24 +77,6 @@ impl Tree {
     }
 }
 
-/// The tree over all items, which are written in the order of its leaves.
-fn range(items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
-    let count = out.len();
-    if count > LARGE && !is_deep(depth, count) {
-        let mut cells = Cells::new(&items, count);
-        if cells.boxes.len() > 1 {
-            let plan = plan(&mut cells.boxes, count, depth, true);
-            cells.scatter(&items, out);
-            drop((items, cells));
-            return follow(plan, out, depth);
-        }
-    }
-    for (i, out) in out.iter_mut().enumerate() {
-        *out = items(i);
-    }
-    piece(out, depth)
-}
-
 /// Whether only halves are sure to end within the bound on depth.
 fn is_deep(depth: u32, count: usize) -> bool {
     depth + count.ilog2() + 2 >= Bvh::MAX_DEPTH
@@ -109,63 +96,89 @@ impl Plan {
     }
 }
 
-fn plan(cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
-    let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
-    if cells.len() == 1 || (few && !is_first) || is_deep(depth, count) {
-        return Plan::Rest { count };
-    }
-    let bounds = around(cells);
-    let Parts { length, .. } = part(cells);
-    let (below, above) = cells.split_at_mut(length);
-    let count_below = below.iter().map(|cell| cell.weight() as usize).sum();
-    let mut grow_below = || plan(below, count_below, depth + 1, false);
-    let mut grow_above = || plan(above, count - count_below, depth + 1, false);
-    let (below, above) =
-        if length > FEW_CELLS { rayon::join(grow_below, grow_above) } else { (grow_below(), grow_above()) };
-    Plan::Fork { bounds, count, parts: Box::new([below, above]) }
+struct Grower {
+    quality: Quality,
 }
 
-fn follow(plan: Plan, items: &mut [Extent], depth: u32) -> Tree {
-    match plan {
-        Plan::Rest { count } if count > LARGE => {
-            let copy = items.to_vec();
-            range(move |i| copy[i], items, depth)
+impl Grower {
+    /// The tree over all items, which are written in the order of its leaves.
+    fn range(&self, items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
+        let count = out.len();
+        if count > LARGE && !is_deep(depth, count) {
+            let mut cells = Cells::new(&items, count, count / PRIMITIVES_PER_CELL);
+            if cells.boxes.len() > 1 {
+                let plan = Self::plan(&mut cells.boxes, count, depth, true);
+                cells.scatter(&items, out);
+                drop((items, cells));
+                return self.follow(plan, out, depth);
+            }
         }
-        Plan::Rest { .. } => piece(items, depth),
-        Plan::Fork { bounds, count, parts } => {
-            let [below, above] = *parts;
-            let (items_below, items_above) = items.split_at_mut(below.count());
-            let (below, above) = rayon::join(
-                || follow(below, items_below, depth + 1),
-                || follow(above, items_above, depth + 1),
-            );
-            Tree::Fork(Box::new((bounds, count, below, above)))
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = items(i);
+        }
+        self.piece(out, depth)
+    }
+
+    fn plan(cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
+        let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
+        if cells.len() == 1 || (few && !is_first) || is_deep(depth, count) {
+            return Plan::Rest { count };
+        }
+        let bounds = around(cells);
+        let Parts { length, .. } = part(cells, Quality::High);
+        let (below, above) = cells.split_at_mut(length);
+        let count_below = below.iter().map(|cell| cell.weight() as usize).sum();
+        let mut grow_below = || Self::plan(below, count_below, depth + 1, false);
+        let mut grow_above = || Self::plan(above, count - count_below, depth + 1, false);
+        let (below, above) = if length > FEW_CELLS {
+            rayon::join(grow_below, grow_above)
+        } else {
+            (grow_below(), grow_above())
+        };
+        Plan::Fork { bounds, count, parts: Box::new([below, above]) }
+    }
+
+    fn follow(&self, plan: Plan, items: &mut [Extent], depth: u32) -> Tree {
+        match plan {
+            Plan::Rest { count } if count > LARGE => {
+                let copy = items.to_vec();
+                self.range(move |i| copy[i], items, depth)
+            }
+            Plan::Rest { .. } => self.piece(items, depth),
+            Plan::Fork { bounds, count, parts } => {
+                let [below, above] = *parts;
+                let (items_below, items_above) = items.split_at_mut(below.count());
+                let (below, above) = rayon::join(
+                    || self.follow(below, items_below, depth + 1),
+                    || self.follow(above, items_above, depth + 1),
+                );
+                Tree::Fork(Box::new((bounds, count, below, above)))
+            }
         }
     }
-}
 
-fn piece(items: &mut [Extent], depth: u32) -> Tree {
-    let mut nodes = Vec::with_capacity(items.len() * 7 / 8);
-    let bounds = around(items);
-    let costs = subtree(items, &bounds, depth, &mut nodes);
-    Tree::Piece(nodes, costs)
-}
-
-/// Appends the tree over a range.
-fn subtree(items: &mut [Extent], bounds: &Extent, depth: u32, out: &mut Vec<Binary>) -> Costs {
-    let (parent, count) = (out.len(), items.len());
-    let area = bounds.half_area();
-    let (costs, choice) = leaf(area, count);
-    out.push(Binary { bounds: bounds.to_aabb(), above: 0, choice });
-    if count <= BLOCK {
-        return costs;
+    fn piece(&self, items: &mut [Extent], depth: u32) -> Tree {
+        let mut nodes = Vec::with_capacity(items.len() * 5 / 8);
+        let bounds = around(items);
+        let costs = self.subtree(items, &bounds, depth, &mut nodes);
+        Tree::Piece(nodes, costs)
     }
-    let parts = if is_deep(depth, count) { part_at_median(items) } else { part(items) };
-    let (below, above) = items.split_at_mut(parts.length);
-    let below = subtree(below, &parts.bounds[0], depth + 1, out);
-    out[parent].above = out.len() as u32;
-    let above = subtree(above, &parts.bounds[1], depth + 1, out);
-    let (costs, choice) = inner(area, count, &below, &above);
-    out[parent].choice = choice;
-    costs
+    /// Appends the tree over a range.
+    fn subtree(&self, items: &mut [Extent], bounds: &Extent, depth: u32, out: &mut Vec<Binary>) -> Costs {
+        let (parent, count) = (out.len(), items.len());
+        let area = bounds.half_area();
+        let (costs, choice) = leaf(area, count);
+        out.push(Binary { bounds: bounds.to_aabb(), above: 0, choice });
+        if count <= BLOCK {
+            return costs;
+        }
+        let parts = if is_deep(depth, count) { part_at_median(items) } else { part(items, self.quality) };
+        let (below, above) = items.split_at_mut(parts.length);
+        let below = self.subtree(below, &parts.bounds[0], depth + 1, out);
+        out[parent].above = out.len() as u32;
+        let above = self.subtree(above, &parts.bounds[1], depth + 1, out);
+        let (costs, choice) = inner(area, count, &below, &above);
+        out[parent].choice = choice;
+        costs
+    }
 }

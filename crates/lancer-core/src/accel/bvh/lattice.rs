@@ -4,10 +4,6 @@ use super::extent::Extent;
 use glam::Vec4;
 use rayon::prelude::*;
 
-/// Primitives for each cell of the lattice, empty ones included. On surfaces most are empty. Less makes tables
-/// that do not fit caches, more leaves coarse borders to part at.
-const PRIMITIVES_PER_CELL: usize = 8;
-
 /// The most cells along an axis, for primitives in a line.
 const MAX_CELLS: f32 = 1024.0;
 
@@ -22,11 +18,11 @@ struct Lattice {
 }
 
 impl Lattice {
-    fn new(centers: &Extent, count: usize) -> Self {
+    fn new(centers: &Extent, budget: usize) -> Self {
         let sides =
             centers.sides().truncate().to_array().map(|side| if side.is_finite() { side } else { 0.0 });
         let longest = sides.into_iter().fold(0.0, f32::max);
-        let budget = (count / PRIMITIVES_PER_CELL).max(8) as f32;
+        let budget = budget.max(8) as f32;
         let along = |n: f32| sides.map(|side| (n * (side / longest.max(f32::MIN_POSITIVE))).ceil().max(1.0));
         let mut n = MAX_CELLS;
         while n > 2.0 && along(n).iter().product::<f32>() > budget {
@@ -61,8 +57,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Sorts items into cells; they are not stored.
-    pub(super) fn new(items: &(impl Fn(usize) -> Extent + Sync), count: usize) -> Self {
+    /// Sorts items into at most `budget` cells; the items are not stored.
+    pub(super) fn new(items: &(impl Fn(usize) -> Extent + Sync), count: usize, budget: usize) -> Self {
         // Sums of integers and minima: the result does not depend on the number of chunks.
         let chunk = count.div_ceil(rayon::current_num_threads()).max(CHUNK);
         let centers = (0..count.div_ceil(chunk))
@@ -72,7 +68,7 @@ impl Cells {
                     .fold(Extent::EMPTY, |sum, i| sum.union(&Extent::point(items(i).center())))
             })
             .reduce(|| Extent::EMPTY, |a, b| a.union(&b));
-        let lattice = Lattice::new(&centers, count);
+        let lattice = Lattice::new(&centers, budget);
         let mut of = vec![0_u32; count];
         let tables = of
             .par_chunks_mut(chunk)
