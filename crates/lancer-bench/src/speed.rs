@@ -173,10 +173,10 @@ impl Rays {
             rays.shadow.extend(world.lights().iter().map(|light| at.segment_to(light.position)));
             rays.mirror.push(at.spawn(reflect(ray.direction, normal)));
             for fan in lattice.around(normal, &mut Key::camera(x, y, 0).stream()) {
-                rays.ao.extend((0..fan.count).map(|i| Ray {
-                    t_max: scene.settings.ao.distance,
-                    ..at.spawn(fan.direction(i))
-                }));
+                rays.ao.extend(
+                    (0..fan.count)
+                        .map(|i| Ray { t_max: scene.settings.ao.distance, ..at.spawn(fan.direction(i)) }),
+                );
             }
         }
         Ok(rays)

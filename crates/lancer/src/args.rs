@@ -6,9 +6,9 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args as ClapArgs, Parser, Subcommand};
 use lancer_core::accel::{Accelerator, KdTree};
-use lancer_core::simd::InstructionSet;
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
+use lancer_core::simd::InstructionSet;
 use lancer_io::scene_file::Override;
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -70,7 +70,11 @@ fn image_is_identical_for_any_threads_tiles_and_accelerator() {
         assert_eq!(bits(&other), bits(&reference), "tiles of {tile_size}");
     }
     for kd in [KdSettings { leaf: Some(1), depth: None }, KdSettings { leaf: Some(50), depth: Some(4) }] {
-        let other = picture(&CompileOptions { accelerator: Accelerator::KdTree, kd, ..CompileOptions::default() }, None, 32);
+        let other = picture(
+            &CompileOptions { accelerator: Accelerator::KdTree, kd, ..CompileOptions::default() },
+            None,
+            32,
+        );
         assert_eq!(bits(&other), bits(&reference), "{kd:?}");
     }
     for accelerator in Accelerator::ALL {

@@ -133,13 +133,17 @@ mod tests {
         let lattice = HemisphereLattice::new(samples);
         lattice
             .around(normal, &mut Key::camera(key, 0, 0).stream())
-            .flat_map(|fan| (0..fan.count).map(move |i| (fan.direction(i), fan.elevation(i))).collect::<Vec<_>>())
+            .flat_map(|fan| {
+                (0..fan.count).map(move |i| (fan.direction(i), fan.elevation(i))).collect::<Vec<_>>()
+            })
             .collect()
     }
 
     #[test]
     fn directions_have_length_one_and_the_elevations_they_claim() {
-        for (key, normal) in [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::new(0.6, 0.0, -0.8)].into_iter().enumerate() {
+        for (key, normal) in
+            [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::new(0.6, 0.0, -0.8)].into_iter().enumerate()
+        {
             for samples in [1, 2, 7, 128, 1000] {
                 let found = directions(samples, normal, key as u32);
                 assert!(found.len().abs_diff(samples as usize / 2) <= 1);
@@ -179,7 +183,10 @@ mod tests {
                 let n = f64::from(estimates);
                 let mean = sums[i] / n;
                 let error = ((squares[i] / n - mean * mean).max(0.0) / n).sqrt();
-                assert!((mean - expected).abs() < 5.0 * error + 1e-12, "N = {samples}: {mean} is not {expected}");
+                assert!(
+                    (mean - expected).abs() < 5.0 * error + 1e-12,
+                    "N = {samples}: {mean} is not {expected}"
+                );
             }
         }
     }

@@ -6,10 +6,8 @@
 mod hemisphere;
 mod key;
 
-
 pub use hemisphere::HemisphereLattice;
 pub use key::{Branch, Key, Stream};
-
 
 /// The offsets of the centres of n x n subpixels from a pixel's top left corner, row by row.
 pub fn subpixel_centers(n: u32) -> impl Iterator<Item = (f64, f64)> {

@@ -3,7 +3,7 @@
 use super::geometry::{Geometry, PreparedMesh, TriangleIndex};
 use super::{Object, ObjectId, ObjectIndex, World};
 use crate::accel::triangles::TriangleTree;
-use crate::accel::{Aabb, Accelerator, Bvh, BuildError, KdSettings, KdTree, Primitives, Quality, bvh};
+use crate::accel::{Aabb, Accelerator, BuildError, Bvh, KdSettings, KdTree, Primitives, Quality, bvh};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Transform};
 use crate::mesh::Mesh;
@@ -160,9 +160,7 @@ impl World {
 
 fn index_triangles(mesh: &Mesh, options: &CompileOptions) -> Result<TriangleIndex, CompileError> {
     Ok(match options.accelerator {
-        Accelerator::Bvh => {
-            TriangleIndex::Bvh(TriangleTree::build(mesh, options.quality, options.level())?)
-        }
+        Accelerator::Bvh => TriangleIndex::Bvh(TriangleTree::build(mesh, options.quality, options.level())?),
         Accelerator::KdTree => TriangleIndex::Kd(KdTree::build(mesh, options.kd)?),
         Accelerator::BruteForce => TriangleIndex::None,
     })

@@ -18,8 +18,11 @@ fn compile_error(scene: &Scene) -> CompileError {
 }
 
 fn by_brute_force(scene: &Scene) -> World {
-    World::compile(scene, &CompileOptions { accelerator: Accelerator::BruteForce, ..CompileOptions::default() })
-        .unwrap()
+    World::compile(
+        scene,
+        &CompileOptions { accelerator: Accelerator::BruteForce, ..CompileOptions::default() },
+    )
+    .unwrap()
 }
 
 fn mesh_scene(data: MeshData, transform: Transform) -> Scene {

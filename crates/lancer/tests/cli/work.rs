@@ -27,7 +27,14 @@ fn the_picture_does_not_depend_on_the_tile_size() {
 
 #[test]
 fn the_picture_does_not_depend_on_the_accelerator_or_its_bounds() {
-    for way in ["--accel brute-force", "--accel bvh", "--accel kd-tree", "--kd-leaf 1", "--kd-depth 0", "--kd-depth 64"] {
+    for way in [
+        "--accel brute-force",
+        "--accel bvh",
+        "--accel kd-tree",
+        "--kd-leaf 1",
+        "--kd-depth 0",
+        "--kd-depth 64",
+    ] {
         assert_changes_nothing(way);
     }
 }

@@ -6,8 +6,8 @@
 
 use super::lanes::{add, cross, dot, load3, splat3, sub};
 use super::ray::{NarrowRay, UNIT_ROUNDOFF};
-use fearless_simd::prelude::*;
 use fearless_simd::f32x4;
+use fearless_simd::prelude::*;
 
 /// Triangles in a block.
 pub(super) const BLOCK: usize = 4;

@@ -8,11 +8,11 @@
 //!
 //! Source of the masks: Laine, Karras, "Two methods for fast ray-cast ambient occlusion" (EGSR 2010).
 
+use super::TriangleTree;
 use super::block::{BLOCK, Block, BlockRay};
 use super::lanes::{cross, dot, load3, splat3, sub};
 use super::ray::{LEAST_COMPONENT, NarrowRay, UNIT_ROUNDOFF};
 use super::walk::{STACK, walk_from};
-use super::TriangleTree;
 use crate::accel::bvh::{Child, WIDTH};
 use crate::geometry::{DMat3, DVec3, DirectionFan};
 use arrayvec::ArrayVec;
@@ -190,12 +190,19 @@ fn node_of_fan<S: Simd>(
     // The boxes as seen from the point, enlarged by its error.
     let mut low = sub(sub(min, point), below);
     let mut high = sub(sub(max, point), above);
-    let spread = low[0].abs().max(low[1].abs()).max(low[2].abs()).max(high[0].abs()).max(high[1].abs()).max(high[2].abs());
+    let spread = low[0]
+        .abs()
+        .max(low[1].abs())
+        .max(low[2].abs())
+        .max(high[0].abs())
+        .max(high[1].abs())
+        .max(high[2].abs());
     // Enlarged by all rounding of this and of the slab test below, which is relative to their distance.
     let slack = spread * (8.0 * UNIT_ROUNDOFF);
     low = [low[0] - slack, low[1] - slack, low[2] - slack];
     high = [high[0] + slack, high[1] + slack, high[2] + slack];
-    let outside = [low[0].max(-high[0]).max(zero), low[1].max(-high[1]).max(zero), low[2].max(-high[2]).max(zero)];
+    let outside =
+        [low[0].max(-high[0]).max(zero), low[1].max(-high[1]).max(zero), low[2].max(-high[2]).max(zero)];
     let squared = dot(outside, outside);
     let top = |axis: usize| if fan.normal[axis] < 0.0 { low[axis] } else { high[axis] };
     let normal: [f32x8<S>; 3] = splat3(simd, fan.normal);
@@ -266,8 +273,9 @@ fn block_of_fan<S: Simd>(
     let point: [f32x4<S>; 3] = splat3(simd, fan.point);
     let rest: [f32x4<S>; 3] = splat3(simd, fan.point_rest);
     let normal: [f32x4<S>; 3] = splat3(simd, fan.normal);
-    let corner = |i: usize| sub(sub(load3(simd, &block.corners[i]), point), rest);
-    let (a, b, c): ([f32x4<S>; 3], [f32x4<S>; 3], [f32x4<S>; 3]) = (corner(0), corner(1), corner(2));
+    let a = sub(sub(load3(simd, &block.corners[0]), point), rest);
+    let b = sub(sub(load3(simd, &block.corners[1]), point), rest);
+    let c = sub(sub(load3(simd, &block.corners[2]), point), rest);
     let size = largest(a).max(largest(b)).max(largest(c));
     let slack = size * (16.0 * UNIT_ROUNDOFF) + fan.error * 2.0;
     let (ha, hb, hc) = (dot(normal, a), dot(normal, b), dot(normal, c));
@@ -329,25 +337,13 @@ fn highest<S: Simd>(
     let zero = splat(0.0);
     let normal: [f32x4<S>; 3] = splat3(simd, fan.normal);
     let (aa, bb, cc) = (dot(a, a), dot(b, b), dot(c, c));
-    let corner = |h: f32x4<S>, square: f32x4<S>| {
-        let h = h.max(zero);
-        h * h / square
-    };
-    let square_of_normal = dot(normal, normal);
-    let edge = |plane: [f32x4<S>; 3], x: [f32x4<S>; 3], y: [f32x4<S>; 3], [hx, hy, xx, yy]: [f32x4<S>; 4]| {
-        let along = dot(plane, normal);
-        let top = square_of_normal - along * along / dot(plane, plane);
-        let xy = dot(x, y);
-        // The elevation rises from both ends: the highest point of the great circle lies between them.
-        let between = (hy * xx).simd_gt(hx * xy) & (hx * yy).simd_gt(hy * xy);
-        between.select(top, zero)
-    };
-    let squared = corner(ha, aa)
-        .max(corner(hb, bb))
-        .max(corner(hc, cc))
-        .max(edge(ab, a, b, [ha, hb, aa, bb]))
-        .max(edge(bc, b, c, [hb, hc, bb, cc]))
-        .max(edge(ca, c, a, [hc, ha, cc, aa]));
+    let top = dot(normal, normal);
+    let squared = of_corner(simd, ha, aa)
+        .max(of_corner(simd, hb, bb))
+        .max(of_corner(simd, hc, cc))
+        .max(of_edge(simd, top, dot(ab, normal), dot(ab, ab), dot(a, b), [ha, hb, aa, bb]))
+        .max(of_edge(simd, top, dot(bc, normal), dot(bc, bc), dot(b, c), [hb, hc, bb, cc]))
+        .max(of_edge(simd, top, dot(ca, normal), dot(ca, ca), dot(c, a), [hc, ha, cc, aa]));
     let (u, v, w) = (dot(ab, normal), dot(bc, normal), dot(ca, normal));
     let (least, most) = (u.min(v).min(w), u.max(v).max(w));
     let overhead = least.simd_ge(zero) | most.simd_le(zero);
@@ -356,6 +352,30 @@ fn highest<S: Simd>(
     let known = squared.simd_ge(zero) & squared.simd_lt(splat(4.0));
     let elevation = (squared + 4e-6).sqrt() + 1e-4;
     ((overhead | blurred) | !known).select(splat(2.0), elevation)
+}
+
+/// The square of the elevation of a corner, from its height and the square of its distance.
+#[inline(always)]
+fn of_corner<S: Simd>(simd: S, height: f32x4<S>, square: f32x4<S>) -> f32x4<S> {
+    let height = height.max(f32x4::splat(simd, 0.0));
+    height * height / square
+}
+
+/// The square of the elevation of the highest point of the great circle through an edge, where that lies between
+/// its ends; else 0. `top` is the square of the normal, `along` its product with the circle's axis, whose square is
+/// `axis`; of the ends x and y, `xy` is the product, then come both heights and both squares.
+#[inline(always)]
+fn of_edge<S: Simd>(
+    simd: S,
+    top: f32x4<S>,
+    along: f32x4<S>,
+    axis: f32x4<S>,
+    xy: f32x4<S>,
+    [hx, hy, xx, yy]: [f32x4<S>; 4],
+) -> f32x4<S> {
+    // The elevation rises from both ends.
+    let between = (hy * xx).simd_gt(hx * xy) & (hx * yy).simd_gt(hy * xy);
+    between.select(top - along * along / axis, f32x4::splat(simd, 0.0))
 }
 
 /// A triangle as seen from the point.
@@ -378,8 +398,9 @@ impl Cone {
             let bits = candidates >> (group * LANES) & 0xffff;
             if bits != 0 {
                 let direction: [f32x16<S>; 3] = group3(simd, &fan.direction, group);
-                let side = |edge: &[f32; 3]| dot(direction, splat3(simd, *edge));
-                let (u, v, w) = (side(&self.edges[0]), side(&self.edges[1]), side(&self.edges[2]));
+                let u = dot(direction, splat3(simd, self.edges[0]));
+                let v = dot(direction, splat3(simd, self.edges[1]));
+                let w = dot(direction, splat3(simd, self.edges[2]));
                 let (least, most) = (u.min(v).min(w), u.max(v).max(w));
                 let inside = least.simd_ge(splat(-self.error)) | most.simd_le(splat(self.error));
                 let maybe = inside.to_bitmask() & bits;
@@ -389,7 +410,8 @@ impl Cone {
                     let negative = determinant.simd_lt(splat(0.0));
                     let volume = negative.select(splat(-self.volume), splat(self.volume));
                     let limit = size * fan.reach;
-                    let slack = limit * (8.0 * UNIT_ROUNDOFF) + (self.error * 4.0 * fan.reach + self.volume_error);
+                    let slack =
+                        limit * (8.0 * UNIT_ROUNDOFF) + (self.error * 4.0 * fan.reach + self.volume_error);
                     let ahead = volume.simd_ge(splat(-self.volume_error)) & (limit - volume).simd_ge(-slack);
                     let vanishing = size.simd_le(splat(self.error * 4.0));
                     let maybe = maybe & (ahead | vanishing).to_bitmask();

@@ -18,7 +18,7 @@ pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
 use super::Aabb;
-use super::bvh::{Bvh, BuildError, Child, Quality, WideNode};
+use super::bvh::{BuildError, Bvh, Child, Quality, WideNode};
 use crate::geometry::{Bounds, DirectionFan, Ray};
 use crate::mesh::Mesh;
 use crate::shape::Hit;

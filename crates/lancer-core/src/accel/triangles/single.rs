@@ -1,9 +1,9 @@
 //! One ray against the triangles of a mesh.
 
+use super::TriangleTree;
 use super::block::{BLOCK, BlockRay};
 use super::ray::NarrowRay;
 use super::walk::walk;
-use super::TriangleTree;
 use crate::geometry::Ray;
 use crate::shape::Hit;
 use crate::shape::triangle::{Canonical, Nearest};
@@ -23,12 +23,7 @@ struct Candidate {
 
 /// The nearest hit.
 #[inline(always)]
-pub(super) fn intersect<S: Simd>(
-    simd: S,
-    tree: &TriangleTree,
-    ray: &Ray,
-    narrow: &NarrowRay,
-) -> Option<Hit> {
+pub(super) fn intersect<S: Simd>(simd: S, tree: &TriangleTree, ray: &Ray, narrow: &NarrowRay) -> Option<Hit> {
     let block_ray = BlockRay::new(simd, narrow);
     let mut nearest: Option<Nearest> = None;
     let mut candidates = ArrayVec::<Candidate, CANDIDATES>::new();

@@ -54,7 +54,10 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
                 .max(plane(simd, node, 2, backward[2], inverse[2], enter_offset[2]).max(zero));
             let leave = plane(simd, node, 0, !backward[0], inverse[0], leave_offset[0])
                 .min(plane(simd, node, 1, !backward[1], inverse[1], leave_offset[1]))
-                .min(plane(simd, node, 2, !backward[2], inverse[2], leave_offset[2]).min(f32x8::splat(simd, end)));
+                .min(
+                    plane(simd, node, 2, !backward[2], inverse[2], leave_offset[2])
+                        .min(f32x8::splat(simd, end)),
+                );
             let mut met = enter.simd_le(leave).to_bitmask() as u32;
             if met != 0 {
                 let first = met.trailing_zeros() as usize;
