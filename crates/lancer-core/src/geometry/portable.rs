@@ -25,8 +25,43 @@ pub fn acos(x: f64) -> f64 {
 }
 
 /// `base` to the power `exponent`.
+///
+/// A whole exponent up to 1024, as most shininesses are, is reached by squaring: within 2^-42 of the true value,
+/// and several times as fast.
 pub fn pow(base: f64, exponent: f64) -> f64 {
-    libm::pow(base, exponent)
+    if (0.0..=1024.0).contains(&exponent) && exponent.trunc() == exponent {
+        whole_power(base, exponent as u32)
+    } else {
+        libm::pow(base, exponent)
+    }
+}
+
+fn whole_power(base: f64, mut exponent: u32) -> f64 {
+    let (mut power, mut square) = (1.0, base);
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power *= square;
+        }
+        square *= square;
+        exponent >>= 1;
+    }
+    power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_powers_agree_with_the_general_ones() {
+        for exponent in [0, 1, 2, 3, 10, 50, 127, 1000, 1024] {
+            for i in 0..=100 {
+                let base = f64::from(i) / 100.0;
+                let (fast, general) = (pow(base, f64::from(exponent)), libm::pow(base, f64::from(exponent)));
+                assert!((fast - general).abs() <= general * 2.0_f64.powi(-42), "{base}^{exponent}: {fast}, {general}");
+            }
+        }
+    }
 }
 
 /// Two to the power `exponent`.
