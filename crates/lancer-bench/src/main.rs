@@ -1,14 +1,20 @@
 //! Measures Lancer: how fast it builds and traces, and how its estimates converge.
 //!
-//! `cargo run --release -p lancer-bench -- speed` prints build times and rays per second by kind;
-//! `... -- convergence` plots the error of ambient occlusion against the number of its samples.
+//! `cargo run --release -p lancer-bench -- speed` prints build times and rays per second by kind; `... -- embree`
+//! compares them with Embree's; `... -- convergence` plots the error of ambient occlusion against the number of
+//! its samples. README.md says what to install.
 
 mod convergence;
+#[allow(dead_code, reason = "the tables of builds come next")]
+mod embree;
 mod plot;
+#[allow(dead_code, reason = "the table of growth comes next")]
+mod record;
 mod speed;
 mod subjects;
+mod versus;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Why a measurement could not be made; any error will do, from any thread.
@@ -37,6 +43,14 @@ enum Command {
         #[arg(long)]
         raw: Option<PathBuf>,
     },
+    /// Lancer against Embree in the same run: by ray kind.
+    Embree {
+        /// The tables to print.
+        #[arg(long, value_enum, value_delimiter = ',', default_value = "kinds")]
+        tables: Vec<versus::Table>,
+        #[command(flatten)]
+        versus: Versus,
+    },
     /// The error of ambient occlusion against N, as an SVG plot and a table.
     Convergence {
         /// The plot.
@@ -45,11 +59,63 @@ enum Command {
     },
 }
 
+/// What all comparisons with Embree ask for.
+#[derive(Args)]
+struct Versus {
+    /// Where npm and pip put the models; see README.md.
+    #[arg(long, default_value = "models")]
+    models: PathBuf,
+    /// Only the scenes whose name holds this.
+    #[arg(long, default_value = "")]
+    scene: String,
+    /// Embree's library, where it is not found by itself.
+    #[arg(long)]
+    embree: Option<PathBuf>,
+    /// Embree's configuration; the default lets it use 512 bits on processors where it would not by itself.
+    #[arg(long, default_value = "frequency_level=simd512")]
+    embree_config: String,
+    /// Runs, in which the sides take turns.
+    #[arg(long, default_value_t = 5)]
+    runs: usize,
+    /// Numbers of threads: `1`, `all`, or several with commas.
+    #[arg(long, value_delimiter = ',', default_value = "1,all", value_parser = number_of_threads)]
+    threads: Vec<usize>,
+    /// Write all figures, with the date and the machine's name, into this directory.
+    #[arg(long)]
+    raw: Option<PathBuf>,
+}
+
+impl Versus {
+    fn plan(self, tables: Vec<versus::Table>) -> versus::Plan {
+        let mut threads = self.threads;
+        threads.dedup();
+        versus::Plan {
+            models: self.models,
+            only: self.scene,
+            embree: self.embree,
+            config: self.embree_config,
+            tables,
+            runs: self.runs.max(1),
+            threads,
+            raw: self.raw,
+        }
+    }
+}
+
+/// A number from 1, or `all`.
+fn number_of_threads(text: &str) -> Result<usize, Failure> {
+    match text {
+        "all" => Ok(std::thread::available_parallelism()?.get()),
+        _ => Ok(text.parse::<std::num::NonZeroUsize>()?.get()),
+    }
+}
+
 fn main() -> Result<(), Failure> {
     match Arguments::parse().command {
         Command::Speed { models, runs, thousands, raw } => {
             speed::measure(&speed::Plan { models, runs: runs.max(1), thousands, raw })
         }
+        Command::Embree { tables, versus } => versus::measure(&versus.plan(tables)),
         Command::Convergence { output } => convergence::measure(&output),
     }
 }

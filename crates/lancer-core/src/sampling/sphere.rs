@@ -39,6 +39,11 @@ impl SphereLattice {
         self.directions.is_empty()
     }
 
+    /// The directions as they are.
+    pub fn directions(&self) -> &[DVec3] {
+        &self.directions
+    }
+
     /// The directions, turned.
     pub fn turned(&self, rotation: &Rotation) -> impl Iterator<Item = DVec3> {
         self.directions.iter().map(|&direction| rotation.0 * direction)
@@ -50,6 +55,11 @@ impl SphereLattice {
 pub struct Rotation(DMat3);
 
 impl Rotation {
+    /// It as a matrix, to be multiplied from the left.
+    pub fn matrix(&self) -> DMat3 {
+        self.0
+    }
+
     /// A rotation from the uniform distribution over all of them.
     ///
     /// Source: Marsaglia, "Choosing a point from the surface of a sphere" (1972), for a uniform unit quaternion
