@@ -5,20 +5,24 @@
 //! its samples. README.md says what to install.
 
 mod convergence;
-#[allow(dead_code, reason = "the tables of builds come next")]
 mod embree;
+mod first_light;
 mod plot;
-#[allow(dead_code, reason = "the table of growth comes next")]
 mod record;
 mod speed;
 mod subjects;
 mod versus;
 
 use clap::{Args, Parser, Subcommand};
+use peak_alloc::PeakAlloc;
 use std::path::PathBuf;
 
 /// Why a measurement could not be made; any error will do, from any thread.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Counts the bytes in use, so that the peak of a build is known.
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Measures the Lancer ray tracer.
 #[derive(Parser)]
@@ -43,11 +47,27 @@ enum Command {
         #[arg(long)]
         raw: Option<PathBuf>,
     },
-    /// Lancer against Embree in the same run: by ray kind.
+    /// Lancer against Embree in the same run: by ray kind, by frame and by build.
     Embree {
         /// The tables to print.
-        #[arg(long, value_enum, value_delimiter = ',', default_value = "kinds")]
+        #[arg(long, value_enum, value_delimiter = ',', default_value = "kinds,frames,builds")]
         tables: Vec<versus::Table>,
+        /// Write the last frame of both sides into this directory, to look at.
+        #[arg(long)]
+        images: Option<PathBuf>,
+        #[command(flatten)]
+        versus: Versus,
+    },
+    /// How building and tracing grow with the scene, for Lancer and Embree.
+    Scale {
+        /// The most triangles or instances.
+        #[arg(long, default_value_t = 16_000_000)]
+        most: u32,
+        #[command(flatten)]
+        versus: Versus,
+    },
+    /// The time from a compiled dragon to a whole picture of it, and to coarse ones.
+    FirstLight {
         #[command(flatten)]
         versus: Versus,
     },
@@ -98,6 +118,7 @@ impl Versus {
             runs: self.runs.max(1),
             threads,
             raw: self.raw,
+            images: None,
         }
     }
 }
@@ -115,7 +136,11 @@ fn main() -> Result<(), Failure> {
         Command::Speed { models, runs, thousands, raw } => {
             speed::measure(&speed::Plan { models, runs: runs.max(1), thousands, raw })
         }
-        Command::Embree { tables, versus } => versus::measure(&versus.plan(tables)),
+        Command::Embree { tables, images, versus } => {
+            versus::measure(&versus::Plan { images, ..versus.plan(tables) })
+        }
+        Command::Scale { most, versus } => versus::measure_scale(&versus.plan(Vec::new()), most),
+        Command::FirstLight { versus } => versus::measure_first_light(&versus.plan(Vec::new())),
         Command::Convergence { output } => convergence::measure(&output),
     }
 }

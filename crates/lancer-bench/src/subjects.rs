@@ -109,10 +109,11 @@ fn value_noise(u: f64, v: f64, octave: u32) -> f64 {
 
 /// Balls on balls, as triangles: deep concavities and triangles of four sizes.
 pub(crate) fn sphereflake(triangles: u32) -> Result<Subject, Failure> {
-    const BALLS: u32 = 1 + 9 + 81 + 729;
-    let rings = f64::from(triangles / BALLS / 4).sqrt().max(3.0) as u32;
+    // A small one has a level less, so that its balls stay round.
+    let (levels, balls) = if triangles < 100_000 { (2, 1 + 9 + 81) } else { (3, 1 + 9 + 81 + 729) };
+    let rings = f64::from(triangles / balls / 4).sqrt().max(3.0) as u32;
     let mut data = MeshData::default();
-    let mut pending = vec![(Transform::IDENTITY, 3_u32)];
+    let mut pending = vec![(Transform::IDENTITY, levels)];
     while let Some((place, levels)) = pending.pop() {
         add_ball(&mut data, &place, rings);
         if levels > 0 {

@@ -46,7 +46,7 @@ macro_rules! calls {
         impl Calls {
             fn load(code: &Code) -> Result<Self, libloading::Error> {
                 // SAFETY: each type is that of the function of this name in Embree's headers, which both versions
-                // keep; the pointers are not used after `code` is unloaded, since `Library` holds both.
+                // keep; `code` is never unloaded.
                 unsafe { Ok(Self { $($field: *code.get::<$type>(concat!($symbol, "\0").as_bytes())?,)* }) }
             }
         }
@@ -84,8 +84,6 @@ calls! {
 /// Embree, loaded.
 pub(crate) struct Library {
     calls: Calls,
-    /// Unloaded last.
-    _code: Code,
 }
 
 impl Library {
@@ -93,7 +91,10 @@ impl Library {
     pub(crate) fn open(path: &Path) -> Result<Arc<Self>, Failure> {
         // SAFETY: Embree's initialisers only fill its own tables.
         let code = unsafe { Code::new(path)? };
-        Ok(Arc::new(Self { calls: Calls::load(&code)?, _code: code }))
+        let calls = Calls::load(&code)?;
+        // Never unloaded: threads that it started may still be in it.
+        std::mem::forget(code);
+        Ok(Arc::new(Self { calls }))
     }
 }
 
@@ -210,10 +211,6 @@ impl Triangles {
         flat.extend(positions.iter().flatten());
         flat.push(0.0);
         Self { positions: flat, indices: indices.to_vec() }
-    }
-
-    pub(crate) fn count(&self) -> usize {
-        self.indices.len()
     }
 
     /// Bytes of vertices and indices.
@@ -570,4 +567,26 @@ impl<const N: usize> RayHits<N> {
             },
         }
     }
+}
+
+/// Work that gains from wide vectors. `run` is to be `#[inline(always)]`, as is all that it calls.
+pub(crate) trait Vectorised {
+    /// Does it.
+    fn run(self);
+}
+
+/// Does work with the vectors that this processor has: a renderer on Embree would be compiled for it.
+pub(crate) fn vectorised(work: impl Vectorised) {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        // SAFETY: both features were found just now.
+        return unsafe { with_avx2(work) };
+    }
+    work.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn with_avx2(work: impl Vectorised) {
+    work.run();
 }

@@ -2,4 +2,5 @@
 
 pub(crate) mod device;
 pub(crate) mod ffi;
+pub(crate) mod occlusion;
 pub(crate) mod renderer;

@@ -12,6 +12,7 @@ use lancer_core::render::with_threads;
 use lancer_core::world::{CompileOptions, Hit, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Rays that one call of Lancer gets.
 const CHUNK: usize = 1024;
@@ -30,11 +31,7 @@ struct Scenes {
 
 /// Prints a stage's rows; returns its figures.
 #[expect(clippy::print_stdout, reason = "the table is what the command is for")]
-pub(super) fn measure(
-    stage: &Stage,
-    device: &std::sync::Arc<Device>,
-    plan: &Plan,
-) -> Result<Vec<Value>, Failure> {
+pub(super) fn measure(stage: &Stage, device: &Arc<Device>, plan: &Plan) -> Result<Vec<Value>, Failure> {
     let world = World::compile(&stage.scene, &CompileOptions::default())?;
     let triangles = triangles_of(stage);
     let build = |quality, robust| scene_of(stage, &triangles, device, Build { quality, robust });
@@ -150,7 +147,7 @@ impl Rates {
 }
 
 /// Traces a lot on the threads of the current pool. Returns how many rays met something.
-fn trace(world: &World, lot: &Lot) -> usize {
+pub(super) fn trace(world: &World, lot: &Lot) -> usize {
     let chunks = lot.rays.par_chunks(CHUNK);
     if lot.kind.is_occlusion() {
         let count = |blocked: &mut Vec<bool>, rays: &[Ray]| {

@@ -170,7 +170,7 @@ fn ambient_occlusion(seen: &[Option<Seen>], reach: f64) -> Lot {
         }
         let mut all: Vec<usize> = (first_of_tile..rays.len()).collect();
         all.sort_by_key(|&ray| {
-            crate::embree::renderer::direction_bin(rays[ray].direction.as_vec3().to_array())
+            crate::embree::occlusion::direction_bin(rays[ray].direction.as_vec3().to_array())
         });
         by_direction.extend(packets_of(&all));
     }

