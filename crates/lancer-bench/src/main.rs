@@ -85,9 +85,9 @@ struct Versus {
     /// Where npm and pip put the models; see README.md.
     #[arg(long, default_value = "models")]
     models: PathBuf,
-    /// Only the scenes whose name holds this.
-    #[arg(long, default_value = "")]
-    scene: String,
+    /// Only these scenes, of bunny, dragon-48k, dragon, sphereflake, terrain, samurai and instances.
+    #[arg(long, value_delimiter = ',')]
+    scene: Vec<String>,
     /// Embree's library, where it is not found by itself.
     #[arg(long)]
     embree: Option<PathBuf>,

@@ -44,7 +44,7 @@ pub(super) struct Tracer<'a> {
 
 impl<'a> Tracer<'a> {
     pub(super) fn new(scene: &'a Scene, fans: Fans, picture: &'a Picture) -> Self {
-        let query = Query::new(false);
+        let query = Query::new(fans == Fans::ByDirectionCoherent);
         Self { scene, fans, picture, query, spokes: Vec::new(), sorted: Vec::new() }
     }
 
@@ -70,7 +70,7 @@ impl<'a> Tracer<'a> {
                     _ => {}
                 }
             }
-            if self.fans == Fans::ByDirection {
+            if matches!(self.fans, Fans::ByDirection | Fans::ByDirectionCoherent) {
                 self.sort();
                 self.packets_of_many_points(tile);
             }

@@ -77,10 +77,13 @@ pub(crate) enum Fans {
     SameIndex,
     /// All directions of 64 points, sorted by where they go.
     ByDirection,
+    /// The same, told to be coherent.
+    ByDirectionCoherent,
 }
 
 impl Fans {
-    pub(crate) const ALL: [Self; 4] = [Self::Single, Self::OnePoint, Self::SameIndex, Self::ByDirection];
+    pub(crate) const ALL: [Self; 5] =
+        [Self::Single, Self::OnePoint, Self::SameIndex, Self::ByDirection, Self::ByDirectionCoherent];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -88,6 +91,7 @@ impl Fans {
             Self::OnePoint => "16 of one point",
             Self::SameIndex => "16 across 4x4 pixels",
             Self::ByDirection => "16 by direction in 8x8 pixels",
+            Self::ByDirectionCoherent => "16 by direction in 8x8 pixels, coherent",
         }
     }
 }

@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// What to measure.
 pub(crate) struct Plan {
     pub(crate) models: PathBuf,
-    /// A part of the names of the scenes.
-    pub(crate) only: String,
+    /// The scenes; all if it names none.
+    pub(crate) only: Vec<String>,
     pub(crate) embree: Option<PathBuf>,
     /// Embree's configuration text.
     pub(crate) config: String,
@@ -83,8 +83,8 @@ pub(crate) fn measure_scale(plan: &Plan, most: u32) -> Result<(), Failure> {
 
 /// Prints how soon a picture of the dragon, or of what the plan names, is there.
 pub(crate) fn measure_first_light(plan: &Plan) -> Result<(), Failure> {
-    let only = if plan.only.is_empty() { "dragon" } else { &plan.only };
-    stage::each(&plan.models, only, |stage| {
+    let only = if plan.only.is_empty() { vec!["dragon".to_owned()] } else { plan.only.clone() };
+    stage::each(&plan.models, &only, |stage| {
         crate::first_light::measure(stage, &plan.threads, plan.runs, plan.raw.as_deref())
     })
 }

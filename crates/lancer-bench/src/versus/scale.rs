@@ -41,7 +41,7 @@ pub(super) fn measure(library: &Arc<Library>, plan: &Plan, most: u32) -> Result<
     ];
     let mut records = Vec::new();
     let mut fits = Vec::new();
-    for (name, sizes, make) in series.into_iter().filter(|(name, ..)| name.contains(&plan.only)) {
+    for (name, sizes, make) in series.into_iter().filter(|(name, ..)| stage::is_wanted(name, &plan.only)) {
         let mut points = Vec::new();
         for &size in sizes.iter().filter(|&&size| size <= most) {
             let stage = make(size)?;

