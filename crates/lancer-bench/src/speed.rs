@@ -5,6 +5,7 @@
 //! directions of 16 ambient occlusion samples that have weight, within 10% of the mesh's diagonal.
 
 use crate::Failure;
+use crate::record::{keep, median};
 use crate::subjects::{self, Subject};
 use lancer_core::Rgb;
 
@@ -17,9 +18,9 @@ use lancer_core::shade::reflect;
 use lancer_core::world::{CompileOptions, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
 pub(crate) struct Plan {
     pub(crate) models: Vec<PathBuf>,
@@ -65,7 +66,7 @@ pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
         }
     }
     if let Some(directory) = &plan.raw {
-        let path = keep(directory, &records)?;
+        let path = keep(directory, "speed", &records)?;
         println!("all figures: {}", path.display());
     }
     Ok(())
@@ -192,42 +193,4 @@ fn rate(rays: &[Ray], trace: impl Fn(&Ray) -> bool + Sync) -> f64 {
     let hits = rays.par_iter().filter(|ray| trace(ray)).count();
     std::hint::black_box(hits);
     rays.len() as f64 / start.elapsed().as_secs_f64() / 1e6
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
-}
-
-/// Writes all figures with what is needed to understand them later.
-fn keep(directory: &Path, records: &[Value]) -> Result<PathBuf, Failure> {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
-    let record = json!({
-        "unix_time": seconds,
-        "machine": processor_name(),
-        "command": command_line(),
-        "version": env!("CARGO_PKG_VERSION"),
-        "rows": records,
-    });
-    std::fs::create_dir_all(directory)?;
-    let path = directory.join(format!("speed-{seconds}.json"));
-    std::fs::write(&path, serde_json::to_string_pretty(&record)? + "\n")?;
-    Ok(path)
-}
-
-/// The command as typed, without the directories of this machine.
-fn command_line() -> String {
-    let name = |word: String| match Path::new(&word).file_name() {
-        Some(name) => name.to_string_lossy().into_owned(),
-        None => word,
-    };
-    std::env::args().map(name).collect::<Vec<_>>().join(" ")
-}
-
-/// The processor's name where the system tells it.
-fn processor_name() -> String {
-    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.to_owned())
 }

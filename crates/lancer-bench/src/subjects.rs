@@ -10,6 +10,7 @@ use lancer_io::limits::Limits;
 use lancer_io::resolver::Resolver;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
+use std::str::FromStr;
 use std::sync::Arc;
 
 /// A mesh with a name.
@@ -32,6 +33,47 @@ pub(crate) fn from_file(path: &Path) -> Result<Subject, Failure> {
     let mesh = meshes.max_by_key(|mesh| mesh.triangle_count()).ok_or("the model has no mesh")?;
     let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     Ok(Subject { name, mesh: Arc::clone(mesh) })
+}
+
+/// All meshes of a model file as one, of flat facets.
+pub(crate) fn whole_file(path: &Path) -> Result<Mesh, Failure> {
+    let resolver = Resolver::for_file(path, true, Limits::default());
+    let model = lancer_io::model::load(path, &resolver)?;
+    let mut scene = Scene::new("model");
+    let _node = model.insert_into(&mut scene);
+    let mut all = MeshData::default();
+    for node in scene.nodes() {
+        if let Some(Shape::Mesh(mesh)) = &node.shape {
+            let first = all.positions.len() as u32;
+            all.positions.extend(&mesh.data().positions);
+            all.indices.extend(mesh.data().indices.iter().map(|corners| corners.map(|index| first + index)));
+        }
+    }
+    Ok(Mesh::new(all)?)
+}
+
+/// The mesh of npm's package `bunny`: a JavaScript module that exports nested arrays, `positions` and `cells`.
+pub(crate) fn bunny(module: &str) -> Result<Mesh, Failure> {
+    let positions = exported_triples(module, "positions")?;
+    let indices = exported_triples(module, "cells")?;
+    Ok(Mesh::new(MeshData { positions, indices, ..MeshData::default() })?)
+}
+
+/// The triples of numbers in `exports.<name>=[[a,b,c],[...],...]`.
+fn exported_triples<T: FromStr>(module: &str, name: &str) -> Result<Vec<[T; 3]>, Failure>
+where
+    Failure: From<T::Err>,
+{
+    let start = format!("exports.{name}=[[");
+    let after = module.split_once(&start).ok_or_else(|| format!("the module does not export {name}"))?.1;
+    let list = after.split_once("]]").ok_or_else(|| format!("the list of {name} does not end"))?.0;
+    list.split("],[")
+        .map(|triple| {
+            let numbers = triple.split(',').map(|word| Ok(word.trim().parse()?));
+            let numbers: Vec<T> = numbers.collect::<Result<_, Failure>>()?;
+            numbers.try_into().map_err(|_| format!("an entry of {name} is not a triple: {triple}").into())
+        })
+        .collect()
 }
 
 /// A height field with noise at every scale: many triangles, all visible, all alike.
@@ -67,10 +109,11 @@ fn value_noise(u: f64, v: f64, octave: u32) -> f64 {
 
 /// Balls on balls, as triangles: deep concavities and triangles of four sizes.
 pub(crate) fn sphereflake(triangles: u32) -> Result<Subject, Failure> {
-    const BALLS: u32 = 1 + 9 + 81 + 729;
-    let rings = f64::from(triangles / BALLS / 4).sqrt().max(3.0) as u32;
+    // A small one has a level less, so that its balls stay round.
+    let (levels, balls) = if triangles < 100_000 { (2, 1 + 9 + 81) } else { (3, 1 + 9 + 81 + 729) };
+    let rings = f64::from(triangles / balls / 4).sqrt().max(3.0) as u32;
     let mut data = MeshData::default();
-    let mut pending = vec![(Transform::IDENTITY, 3_u32)];
+    let mut pending = vec![(Transform::IDENTITY, levels)];
     while let Some((place, levels)) = pending.pop() {
         add_ball(&mut data, &place, rings);
         if levels > 0 {
@@ -94,6 +137,13 @@ fn nine_around(place: &Transform) -> impl Iterator<Item = Transform> {
     })
 }
 
+/// A ball of about so many triangles, to be used many times.
+pub(crate) fn ball(triangles: u32) -> Result<Subject, Failure> {
+    let mut data = MeshData::default();
+    add_ball(&mut data, &Transform::IDENTITY, f64::from(triangles / 4).sqrt().max(3.0) as u32);
+    Ok(Subject { name: "ball".into(), mesh: Arc::new(Mesh::new(data)?) })
+}
+
 fn add_ball(data: &mut MeshData, place: &Transform, rings: u32) {
     let segments = 2 * rings;
     let first = data.positions.len() as u32;
@@ -108,5 +158,26 @@ fn add_ball(data: &mut MeshData, place: &Transform, rings: u32) {
         let corner = first + ring * row + segment;
         data.indices
             .extend([[corner, corner + row, corner + 1], [corner + 1, corner + row, corner + row + 1]]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bunny_is_read_from_a_javascript_module() {
+        let module = "exports.positions=[[0,0,0],[1.5,0,-2e-1],[0,1,0]]\nexports.cells=[[0,1,2]]\n";
+        let mesh = bunny(module).unwrap();
+        assert_eq!(mesh.vertices(0), [[0.0, 0.0, 0.0], [1.5, 0.0, -0.2], [0.0, 1.0, 0.0]]);
+    }
+
+    #[test]
+    fn a_module_that_is_no_mesh_is_refused() {
+        for module in
+            ["", "exports.positions=[[0,0]]", "exports.positions=[[0,0,x]]\nexports.cells=[[0,1,2]]"]
+        {
+            assert!(bunny(module).is_err());
+        }
     }
 }

@@ -58,7 +58,10 @@ mod tests {
             for i in 0..=100 {
                 let base = f64::from(i) / 100.0;
                 let (fast, general) = (pow(base, f64::from(exponent)), libm::pow(base, f64::from(exponent)));
-                assert!((fast - general).abs() <= general * 2.0_f64.powi(-42), "{base}^{exponent}: {fast}, {general}");
+                assert!(
+                    (fast - general).abs() <= general * 2.0_f64.powi(-42),
+                    "{base}^{exponent}: {fast}, {general}"
+                );
             }
         }
     }

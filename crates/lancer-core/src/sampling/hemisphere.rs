@@ -38,8 +38,17 @@ impl HemisphereLattice {
         self.samples
     }
 
+    /// The cosine and the sine of the azimuth of each direction that may have weight, the highest first.
+    pub fn azimuths(&self) -> &[[f64; 2]] {
+        &self.azimuths
+    }
+
     /// The directions around a unit `normal`, from the lowest to the highest, shifted by two numbers of `stream`.
-    pub fn around(&self, normal: DVec3, stream: &mut Stream) -> impl Iterator<Item = DirectionFan> {
+    pub fn around<'a>(
+        &'a self,
+        normal: DVec3,
+        stream: &mut Stream,
+    ) -> impl Iterator<Item = DirectionFan> + use<'a> {
         let shift = Shift::new(self, normal, stream);
         let above = shift.above();
         (0..above)
