@@ -1,9 +1,11 @@
 //! Measures Lancer: how fast it builds and traces, and how its estimates converge.
 //!
 //! `cargo run --release -p lancer-bench -- speed` prints build times and rays per second by kind;
-//! `... -- convergence` plots the error of ambient occlusion against the number of its samples.
+//! `... -- convergence` plots the error of ambient occlusion against the number of its samples;
+//! `... -- peers` times whole processes against other renderers.
 
 mod convergence;
+mod peers;
 mod plot;
 mod speed;
 mod subjects;
@@ -43,6 +45,8 @@ enum Command {
         #[arg(long, default_value = "docs/images/ao-convergence.svg")]
         output: PathBuf,
     },
+    /// Lancer's program against POV-Ray, Tachyon, Mitsuba and Cycles on matched scenes.
+    Peers(peers::Plan),
 }
 
 fn main() -> Result<(), Failure> {
@@ -51,5 +55,6 @@ fn main() -> Result<(), Failure> {
             speed::measure(&speed::Plan { models, runs: runs.max(1), thousands, raw })
         }
         Command::Convergence { output } => convergence::measure(&output),
+        Command::Peers(plan) => peers::measure(&plan),
     }
 }
