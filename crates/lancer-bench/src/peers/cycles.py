@@ -91,7 +91,7 @@ def body(thing):
     elif kind == "plane":
         # Nor endless planes.
         mesh = bpy.data.meshes.new("plane")
-        mesh.from_pydata([(-1e3, 0, -1e3), (-1e3, 0, 1e3), (1e3, 0, 1e3), (1e3, 0, -1e3)], [], [(0, 1, 2, 3)])
+        mesh.from_pydata([(-1e4, 0, -1e4), (-1e4, 0, 1e4), (1e4, 0, 1e4), (1e4, 0, -1e4)], [], [(0, 1, 2, 3)])
         made = bpy.data.objects.new("plane", mesh)
         collection.objects.link(made)
     else:

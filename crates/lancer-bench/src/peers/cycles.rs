@@ -21,7 +21,7 @@ impl Peer for Cycles {
         &[
             "9 samples a pixel; each follows the reflection or the refraction of glass, and picks one light",
             "no diffuse bounces, no denoising; the ambient light is a glow of the surfaces; balls are meshes",
-            "the ground ends after 1000 units; the start of Python and of Blender is in the whole time",
+            "the ground ends after 10,000 units; the start of Python and of Blender is in the whole time",
         ]
     }
 

@@ -14,7 +14,7 @@ begin = time.perf_counter()
 mi.set_variant(variant)
 import drjit as dr  # after the variant, whose types it holds
 
-mi.Thread.set_thread_count(int(threads)) if variant.startswith("scalar") else dr.set_thread_count(int(threads))
+dr.set_thread_count(int(threads))
 
 with open(scene_file) as file:
     scene = json.load(file)
@@ -54,7 +54,7 @@ def shape(thing):
         body = {"type": "sphere", "to_world": place}
     elif kind == "plane":
         # There is no endless one.
-        flat = T().rotate([1, 0, 0], -90) @ T().scale([1000, 1000, 1])
+        flat = T().rotate([1, 0, 0], -90) @ T().scale([1e4, 1e4, 1])
         body = {"type": "rectangle", "to_world": place @ flat}
     else:
         path = os.path.join(os.path.dirname(scene_file), kind["mesh"])
@@ -131,8 +131,8 @@ for number, light in enumerate(scene["lights"]):
         "position": light["position"],
         "intensity": rgb(light["intensity"]),
     }
-for thing in scene["objects"]:
-    description["thing-" + thing["name"]] = shape(thing)
+for number, thing in enumerate(scene["objects"]):
+    description[f"thing-{number}"] = shape(thing)
 
 world = mi.load_dict(description)
 picture = mi.render(world)

@@ -24,7 +24,7 @@ impl Peer for Mitsuba {
     }
 
     fn hint(&self) -> &'static str {
-        "pip install mitsuba, and for llvm apt-get install libllvm15"
+        "pip install mitsuba, and for llvm apt-get install libllvm19"
     }
 
     fn differs(&self) -> &'static [&'static str] {
@@ -32,7 +32,8 @@ impl Peer for Mitsuba {
             "9 stratified samples a pixel; each follows the reflection or the refraction of glass, not both",
             "path: light bounces between matte surfaces, and the sky lights them in place of the ambient light",
             "whitted: our integrator with Lancer's model in its Python interface, both lights at each sample",
-            "the ground ends after 1000 units; the start of Python and the compilation are in the whole time",
+            "llvm: what was compiled in an earlier turn is found again, since Dr.Jit keeps it on disk",
+            "the ground ends after 10,000 units; the start of Python is in the whole time",
         ]
     }
 

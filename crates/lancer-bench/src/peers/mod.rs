@@ -28,11 +28,12 @@ pub(crate) struct Plan {
     /// The peers to run.
     #[arg(long, value_delimiter = ',', default_value = "povray,tachyon,mitsuba,cycles")]
     renderers: Vec<String>,
-    /// The scenes: bunny, bunny-clear, bunny-clear-ao64, or a built-in one of spheres, boxes and meshes.
+    /// The scenes: bunny, bunny-clear (without refraction), bunny-clear-ao7 (with 7 directions of ambient occlusion
+    /// at each subpixel, or any other number), and built-in ones.
     #[arg(
         long,
         value_delimiter = ',',
-        default_value = "bunny,bunny-clear,bunny-clear-ao64,shadows,mirrors,glass,sphereflake"
+        default_value = "bunny,bunny-clear,bunny-clear-ao7,shadows,mirrors,sphereflake"
     )]
     scenes: Vec<String>,
     /// Threads of each renderer; one thread is also bound to one processor.
@@ -116,7 +117,7 @@ const LANCER_FILE: &str = "lancer.json";
 
 /// One regular grid of subpixels for all, with neither jitter nor a threshold.
 const SUPERSAMPLED: &str =
-    "draws three times as wide and high, one ray a pixel: the same subpixels; their mean is not timed";
+    "draws each subpixel as a pixel of a larger image: the same rays; taking their means is not timed";
 
 #[expect(clippy::print_stdout, reason = "the tables are what the command is for")]
 pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
@@ -158,6 +159,7 @@ pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
                 None => entries.extend(peer.entries(&picture, &place)?),
             }
         }
+        drop_failing(&mut entries, pinning)?;
         if entries.len() == 1 {
             continue;
         }
@@ -213,17 +215,24 @@ fn picture_named(name: &str, models: &Path) -> Result<Option<Picture>, Failure> 
     if let Some(scene) = lancer_gallery::find(name) {
         return Ok(Some(Picture::of(&scene.build())));
     }
+    if !name.starts_with("bunny") {
+        return Err(format!("no scene {name:?}").into());
+    }
     let index = models.join("node_modules/bunny/index.js");
     if !index.exists() {
         return Ok(None);
     }
     let picture = Picture::of(&scene::whitted(&Arc::new(scene::bunny(&index)?)));
-    Ok(Some(match name {
-        "bunny" => picture,
-        "bunny-clear" => scene::without_refraction(picture),
-        "bunny-clear-ao64" => scene::with_occlusion(scene::without_refraction(picture), 64),
-        _ => return Err(format!("no scene {name:?}").into()),
-    }))
+    if name == "bunny" {
+        return Ok(Some(picture));
+    }
+    let clear = scene::without_refraction(picture);
+    if name == "bunny-clear" {
+        return Ok(Some(clear));
+    }
+    let samples = name.strip_prefix("bunny-clear-ao").and_then(|samples| samples.parse().ok());
+    let samples = samples.ok_or_else(|| format!("no scene {name:?}"))?;
+    Ok(Some(scene::with_occlusion(clear, samples)))
 }
 
 fn lancer_program(plan: &Plan) -> Result<PathBuf, Failure> {
@@ -240,7 +249,7 @@ fn lancer_entry(program: &Path, picture: &Picture, place: &Place) -> Result<Entr
     fs::create_dir_all(&place.directory)?;
     picture.write_meshes(&place.directory)?;
     let file = place.directory.join(LANCER_FILE);
-    fs::write(&file, serde_json::to_string_pretty(&picture.to_lancer())?)?;
+    fs::write(&file, picture.to_lancer().to_string())?;
     let image = place.directory.join("lancer.png");
     let command = [
         program.display().to_string(),
@@ -254,6 +263,28 @@ fn lancer_entry(program: &Path, picture: &Picture, place: &Place) -> Result<Entr
         "--json".to_owned(),
     ];
     Ok(Entry::new("lancer", command, image, Reading::Srgb))
+}
+
+/// Runs every entry once, untimed: files are in memory then, and what fails is told and left out.
+#[expect(clippy::print_stdout, reason = "what fails belongs above the table")]
+fn drop_failing(entries: &mut Vec<Entry>, pinning: Pinning) -> Result<(), Failure> {
+    // Without Lancer there is nothing to compare with.
+    process::run(&entries[0], pinning)?;
+    for i in (1..entries.len()).rev() {
+        if let Err(failure) = process::run(&entries[i], pinning) {
+            println!("{:<22} failed: {}", entries[i].label, brief(&failure.to_string()));
+            entries.remove(i);
+        }
+    }
+    Ok(())
+}
+
+/// The lines of a complaint that fit on a screen.
+fn brief(complaint: &str) -> String {
+    const LINES: usize = 6;
+    const COLUMNS: usize = 100;
+    let lines = complaint.lines().filter(|line| !line.trim().is_empty()).take(LINES);
+    lines.map(|line| line.chars().take(COLUMNS).collect::<String>()).collect::<Vec<_>>().join("\n    ")
 }
 
 /// Runs every entry once a turn, so that what else the machine does falls on all alike. One list an entry.

@@ -147,7 +147,7 @@ impl Picture {
         let lights = lights
             .map(|light| json!({"position": xyz(light.position), "intensity": rgb(light.intensity)}))
             .collect::<Vec<_>>();
-        let objects = self.things.iter().enumerate().map(|(number, thing)| {
+        let objects = self.things.iter().map(|thing| {
             let shape = match thing.form {
                 Form::Sphere => json!("sphere"),
                 Form::Cube => json!("cube"),
@@ -156,7 +156,6 @@ impl Picture {
                 Form::Mesh(mesh) => json!({"mesh": mesh_file(mesh)}),
             };
             json!({
-                "name": format!("{number}"),
                 "shape": shape,
                 "material": material_name(thing.material),
                 "transform": transform_list(&thing.world_from_object),

@@ -12,6 +12,9 @@ use std::fs;
 
 pub(super) struct Tachyon;
 
+/// Beyond the rounding of a chain of rotations, and far below a pixel.
+const SLACK: f64 = 1e-9;
+
 impl Peer for Tachyon {
     fn name(&self) -> &'static str {
         "tachyon"
@@ -25,12 +28,12 @@ impl Peer for Tachyon {
         &[
             SUPERSAMPLED,
             "what is seen through lets light through too: its shadow is grey and Lancer's black",
-            "mirrors and ambient light are grey; a cube that is turned is 12 triangles",
+            "mirrors and ambient light are grey; cubes are 12 triangles each",
         ]
     }
 
     fn version(&self) -> Option<String> {
-        version_line("tachyon", &["-version"], "Version")
+        version_line("tachyon", &["-version"], "").map(|number| format!("Tachyon {number}"))
     }
 
     fn unsuited(&self, picture: &Picture) -> Option<&'static str> {
@@ -170,17 +173,10 @@ fn write_thing(out: &mut String, thing: &Thing, picture: &Picture) -> Result<(),
                 )?;
             }
         }
+        // Its own box has the normals of a cube, whatever its sides.
         Form::Cube => {
-            let half = DVec3::new(x.x, y.y, z.z);
-            if [x, y, z] == [DVec3::X * x.x, DVec3::Y * y.y, DVec3::Z * z.z] {
-                // The third axis is turned round on writing, and with it which end is the lower one.
-                let (low, high) = (center - half.abs(), center + half.abs());
-                let low_high = [low.with_z(high.z), high.with_z(low.z)].map(vector);
-                writeln!(out, "BOX MIN {} MAX {} t{texture}", low_high[0], low_high[1])?;
-            } else {
-                for corners in cube_triangles() {
-                    write_triangle(out, corners.map(|corner| place.point(corner)), None, texture)?;
-                }
+            for corners in cube_triangles() {
+                write_triangle(out, corners.map(|corner| place.point(corner)), None, texture)?;
             }
         }
         Form::Mesh(number) => write_mesh(out, picture.meshes[number].data(), thing)?,
@@ -207,19 +203,22 @@ fn write_triangle(
     normals: Option<[DVec3; 3]>,
     texture: usize,
 ) -> Result<(), Failure> {
-    let [a, b, c] = points.map(vector);
-    match normals.map(|normals| normals.map(vector)) {
+    // The turned axis turns what is counterclockwise round.
+    let [a, c, b] = points.map(vector);
+    match normals.map(|[p, r, q]| [p, q, r].map(vector)) {
         None => writeln!(out, "TRI V0 {a} V1 {b} V2 {c} t{texture}")?,
         Some([p, q, r]) => writeln!(out, "STRI V0 {a} V1 {b} V2 {c} N0 {p} N1 {q} N2 {r} t{texture}")?,
     }
     Ok(())
 }
 
+/// Counterclockwise as seen from outside.
 fn cube_triangles() -> Vec<[DVec3; 3]> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let mut triangles = Vec::new();
     for (i, side) in (0..3).flat_map(|i| [1.0, -1.0].map(|side| (i, side))) {
         let (face, u, v) = (axes[i] * side, axes[(i + 1) % 3], axes[(i + 2) % 3]);
+        let (u, v) = if side > 0.0 { (u, v) } else { (v, u) };
         triangles.push([face - u - v, face + u - v, face + u + v]);
         triangles.push([face - u - v, face + u + v, face - u + v]);
     }
@@ -228,8 +227,6 @@ fn cube_triangles() -> Vec<[DVec3; 3]> {
 
 /// Whether a cylinder still has round ends at right angles to its axis.
 fn is_round(thing: &Thing) -> bool {
-    /// Beyond the rounding of a chain of rotations, and far below a pixel.
-    const SLACK: f64 = 1e-9;
     let [x, y, z] = columns(&thing.world_from_object);
     let right_angles = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|dot| dot.abs() < SLACK);
     right_angles && (x.length() - z.length()).abs() < SLACK
