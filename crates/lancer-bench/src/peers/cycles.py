@@ -9,6 +9,7 @@ import sys
 import time
 
 import bpy
+import numpy
 from mathutils import Matrix, Vector
 
 scene_file, threads, image = sys.argv[1:]
@@ -69,8 +70,6 @@ def material(name, lancer):
 def read_ply(path):
     with open(path, "rb") as file:
         data = file.read()
-    import numpy
-
     head, body = data.split(b"end_header\n", 1)
     words = head.split()
     vertices = int(words[words.index(b"vertex") + 1])
@@ -81,33 +80,45 @@ def read_ply(path):
     return points, faces
 
 
+def ball(rings=64):
+    """A fine mesh with smooth normals, since Cycles has no spheres."""
+    row = 2 * rings
+    tilt, turn = numpy.meshgrid(
+        numpy.linspace(0, math.pi, rings + 1), numpy.linspace(0, 2 * math.pi, row, endpoint=False), indexing="ij"
+    )
+    x, z = numpy.sin(tilt) * numpy.sin(turn), numpy.sin(tilt) * numpy.cos(turn)
+    points = numpy.stack([x, numpy.cos(tilt), z], axis=-1).reshape(-1, 3).astype("<f4")
+    ring, step = numpy.meshgrid(numpy.arange(rings), numpy.arange(row), indexing="ij")
+    here, next = ring * row + step, ring * row + (step + 1) % row
+    # At the poles one of the two has no area.
+    upper = numpy.stack([here, next + row, next], axis=-1)[1:]
+    lower = numpy.stack([here, here + row, next + row], axis=-1)[:-1]
+    return points, numpy.concatenate([upper, lower]).reshape(-1, 3).astype("i4")
+
+
 def body(thing):
-    kind = thing["shape"]
+    kind, smooth = thing["shape"], False
     if kind == "sphere":
-        # Cycles has no spheres: a fine mesh with smooth normals.
-        bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128, radius=1)
-        bpy.ops.object.shade_smooth()
-        made = bpy.context.object
+        (points, faces), smooth = ball(), True
     elif kind == "plane":
-        # Nor endless planes.
-        mesh = bpy.data.meshes.new("plane")
-        mesh.from_pydata([(-1e4, 0, -1e4), (-1e4, 0, 1e4), (1e4, 0, 1e4), (1e4, 0, -1e4)], [], [(0, 1, 2, 3)])
-        made = bpy.data.objects.new("plane", mesh)
-        collection.objects.link(made)
+        # There is no endless one.
+        points = numpy.array([(-1e4, 0, -1e4), (-1e4, 0, 1e4), (1e4, 0, 1e4), (1e4, 0, -1e4)], "<f4")
+        faces = numpy.array([(0, 1, 2), (0, 2, 3)], "i4")
     else:
         points, faces = read_ply(os.path.join(os.path.dirname(scene_file), kind["mesh"]))
-        mesh = bpy.data.meshes.new("mesh")
-        mesh.vertices.add(len(points))
-        mesh.vertices.foreach_set("co", points.ravel())
-        mesh.loops.add(faces.size)
-        mesh.loops.foreach_set("vertex_index", faces.ravel())
-        mesh.polygons.add(len(faces))
-        mesh.polygons.foreach_set("loop_start", range(0, faces.size, 3))
-        mesh.update(calc_edges=True)
-        made = bpy.data.objects.new("mesh", mesh)
-        collection.objects.link(made)
+    mesh = bpy.data.meshes.new("mesh")
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set("co", points.ravel())
+    mesh.loops.add(faces.size)
+    mesh.loops.foreach_set("vertex_index", faces.ravel())
+    mesh.polygons.add(len(faces))
+    mesh.polygons.foreach_set("loop_start", numpy.arange(0, faces.size, 3, "i4"))
+    mesh.polygons.foreach_set("use_smooth", numpy.full(len(faces), smooth))
+    mesh.update(calc_edges=True)
+    made = bpy.data.objects.new("thing", mesh)
+    collection.objects.link(made)
     made.matrix_world = transform(thing["transform"])
-    made.data.materials.append(materials[thing["material"]])
+    mesh.materials.append(materials[thing["material"]])
 
 
 materials = {name: material(name, value) for name, value in scene["materials"].items()}
@@ -139,11 +150,11 @@ collection.objects.link(viewer)
 blender.camera = viewer
 
 world = bpy.data.worlds.new("world")
+blender.world = world
 world.use_nodes = True
 world.node_tree.nodes["Background"].inputs["Color"].default_value = (*scene["background"], 1)
 # The background is seen, and lights nothing.
 world.cycles_visibility.diffuse = False
-blender.world = world
 
 blender.render.engine = "CYCLES"
 cycles = blender.cycles

@@ -49,6 +49,6 @@ impl Peer for Cycles {
             place.threads.to_string(),
             image.display().to_string(),
         ];
-        Ok(vec![Entry::new("cycles", command, image, Reading::Srgb)])
+        Ok(vec![Entry::new("cycles", command, image, Reading::Finished)])
     }
 }

@@ -26,15 +26,13 @@ pub(super) fn compare(picture: &Picture, entries: &[Entry], sheet: &Path) -> Res
 fn read(picture: &Picture, entry: &Entry) -> Result<Image, Failure> {
     let texture = load_texture(&entry.image, &Resolver::for_file(&entry.image, true, Limits::default()))?;
     let (width, height) = (picture.settings.width, picture.settings.height);
-    // What drew no subpixels of its own drew each as a pixel.
-    let is_large = entry.image.extension().is_some_and(|extension| extension == "tga");
-    let n = if is_large { picture.settings.samples } else { 1 };
+    let n = if entry.reading == Reading::Finished { 1 } else { picture.settings.samples };
     let (columns, rows) = (f64::from(width * n), f64::from(height * n));
     let color = |x: u32, y: u32| {
         let uv = DVec2::new((f64::from(x) + 0.5) / columns, 1.0 - (f64::from(y) + 0.5) / rows);
         let color = texture.color_at(uv).to_array();
         // The texture took the bytes for sRGB.
-        if entry.reading == Reading::Linear { color.map(linear_to_srgb) } else { color }
+        if entry.reading == Reading::LinearSubpixels { color.map(linear_to_srgb) } else { color }
     };
     let mut image = Image::black(width, height);
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {

@@ -64,7 +64,7 @@ impl Peer for Mitsuba {
                 place.threads.to_string(),
                 image.display().to_string(),
             ];
-            Entry::new(label, command, image, Reading::Srgb)
+            Entry::new(label, command, image, Reading::Finished)
         };
         Ok(WAYS.map(entry).into())
     }

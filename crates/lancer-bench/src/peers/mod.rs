@@ -7,6 +7,7 @@
 
 mod cycles;
 mod look;
+mod matched;
 mod mitsuba;
 mod povray;
 mod process;
@@ -105,11 +106,15 @@ impl Entry {
     }
 }
 
-/// How an image's bytes are meant.
+/// How an image is meant.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reading {
-    Srgb,
-    Linear,
+    /// Encoded in sRGB, and of the picture's size.
+    Finished,
+    /// Encoded in sRGB, each subpixel a pixel.
+    Subpixels,
+    /// Not encoded, each subpixel a pixel.
+    LinearSubpixels,
 }
 
 /// The name of Lancer's scene file, which scripts of other renderers read too.
@@ -222,17 +227,17 @@ fn picture_named(name: &str, models: &Path) -> Result<Option<Picture>, Failure> 
     if !index.exists() {
         return Ok(None);
     }
-    let picture = Picture::of(&scene::whitted(&Arc::new(scene::bunny(&index)?)));
+    let picture = Picture::of(&matched::whitted(&Arc::new(matched::bunny(&index)?)));
     if name == "bunny" {
         return Ok(Some(picture));
     }
-    let clear = scene::without_refraction(picture);
+    let clear = matched::without_refraction(picture);
     if name == "bunny-clear" {
         return Ok(Some(clear));
     }
     let samples = name.strip_prefix("bunny-clear-ao").and_then(|samples| samples.parse().ok());
     let samples = samples.ok_or_else(|| format!("no scene {name:?}"))?;
-    Ok(Some(scene::with_occlusion(clear, samples)))
+    Ok(Some(matched::with_occlusion(clear, samples)))
 }
 
 fn lancer_program(plan: &Plan) -> Result<PathBuf, Failure> {
@@ -262,7 +267,7 @@ fn lancer_entry(program: &Path, picture: &Picture, place: &Place) -> Result<Entr
         "--quiet".to_owned(),
         "--json".to_owned(),
     ];
-    Ok(Entry::new("lancer", command, image, Reading::Srgb))
+    Ok(Entry::new("lancer", command, image, Reading::Finished))
 }
 
 /// Runs every entry once, untimed: files are in memory then, and what fails is told and left out.
@@ -301,18 +306,22 @@ fn take_turns(entries: &[Entry], turns: usize, pinning: Pinning) -> Result<Vec<V
 #[expect(clippy::print_stdout, reason = "the table is what the command is for")]
 fn print_table(entries: &[Entry], rows: &[Vec<Outcome>], distances: &[f64]) {
     println!(
-        "{:<22} {:>8} {:>8} {:>8} {:>8} {:>8}",
-        "renderer", "whole s", "own s", "cpu s", "ratio", "apart"
+        "{:<22} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8}",
+        "renderer", "whole s", "own s", "cpu s", "ratio", "cpu ratio", "apart"
     );
     for ((entry, row), distance) in entries.iter().zip(rows).zip(distances) {
         let over = |of: fn(&Outcome) -> f64| median(row.iter().map(of));
-        let ratio = median(row.iter().zip(&rows[0]).map(|(peer, lancer)| peer.whole / lancer.whole));
+        let ratio = |of: fn(&Outcome) -> f64| {
+            median(row.iter().zip(&rows[0]).map(|(peer, lancer)| of(peer) / of(lancer)))
+        };
         println!(
-            "{:<22} {:>8.3} {:>8.3} {:>8.2} {ratio:>8.2} {distance:>8.2}",
+            "{:<22} {:>8.3} {:>8.3} {:>8.2} {:>8.2} {:>9.2} {distance:>8.2}",
             entry.label,
             over(|outcome| outcome.whole),
             over(|outcome| outcome.own.unwrap_or(outcome.whole)),
             over(|outcome| outcome.cpu),
+            ratio(|outcome| outcome.whole),
+            ratio(|outcome| outcome.cpu),
         );
     }
 }
@@ -351,7 +360,7 @@ fn keep(
         "unix_time": seconds,
         "machine": process::processor_name(),
         "processors": std::thread::available_parallelism()?.get(),
-        "load_before": process::load(),
+        "load_at_end": process::load(),
         "version": env!("CARGO_PKG_VERSION"),
         "pinning": pinning.to_string(),
         "peers": peers.iter().map(about).collect::<std::collections::BTreeMap<_, _>>(),

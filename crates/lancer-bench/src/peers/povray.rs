@@ -58,7 +58,7 @@ impl Peer for PovRay {
             // The best quality, which is the default.
             "+Q9".to_owned(),
         ];
-        Ok(vec![Entry::new("povray", command, image, Reading::Srgb)])
+        Ok(vec![Entry::new("povray", command, image, Reading::Subpixels)])
     }
 }
 

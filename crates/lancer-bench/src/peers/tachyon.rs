@@ -72,7 +72,7 @@ impl Peer for Tachyon {
             "-trans_max_surfaces".to_owned(),
             (settings.depth + 1).to_string(),
         ];
-        Ok(vec![Entry::new("tachyon", command, image, Reading::Linear)])
+        Ok(vec![Entry::new("tachyon", command, image, Reading::LinearSubpixels)])
     }
 }
 
