@@ -57,7 +57,8 @@ impl Picture {
     /// Flattens a scene. Checkers become their mean; what wears an image, as a gallery's sky does, is left out.
     pub(super) fn of(scene: &Scene) -> Self {
         let mut materials = scene.materials().to_vec();
-        materials.push(Material::named("none"));
+        // Of what names none.
+        materials.push(Material::default());
         for material in &mut materials {
             if let Texture::Checker { even, odd, .. } = material.color {
                 material.color = ((even + odd) * 0.5).into();
@@ -77,6 +78,10 @@ impl Picture {
         let mut numbers = HashMap::new();
         for &root in scene.roots() {
             picture.add(scene, root, Transform::IDENTITY, None, &mut numbers);
+        }
+        let none = picture.materials.len() - 1;
+        if picture.things.iter().all(|thing| thing.material != none) {
+            picture.materials.pop();
         }
         picture
     }
