@@ -29,6 +29,7 @@ impl Peer for Tachyon {
             SUPERSAMPLED,
             "what is seen through lets light through too: its shadow is grey and Lancer's black",
             "mirrors and ambient light are grey; cubes are 12 triangles each",
+            "takes the same directions of ambient occlusion at every point: bands where Lancer has noise",
         ]
     }
 
