@@ -2,11 +2,12 @@
 //!
 //! `cargo run --release -p lancer-bench -- speed` prints build times and rays per second by kind; `... -- embree`
 //! compares them with Embree's; `... -- convergence` plots the error of ambient occlusion against the number of
-//! its samples. README.md says what to install.
+//! its samples; `... -- peers` times whole processes against other renderers. README.md says what to install.
 
 mod convergence;
 mod embree;
 mod first_light;
+mod peers;
 mod plot;
 mod record;
 mod speed;
@@ -77,6 +78,8 @@ enum Command {
         #[arg(long, default_value = "docs/images/ao-convergence.svg")]
         output: PathBuf,
     },
+    /// Lancer's program against POV-Ray, Tachyon, Mitsuba and Cycles on matched scenes.
+    Peers(peers::Plan),
 }
 
 /// What all comparisons with Embree ask for.
@@ -142,5 +145,6 @@ fn main() -> Result<(), Failure> {
         Command::Scale { most, versus } => versus::measure_scale(&versus.plan(Vec::new()), most),
         Command::FirstLight { versus } => versus::measure_first_light(&versus.plan(Vec::new())),
         Command::Convergence { output } => convergence::measure(&output),
+        Command::Peers(plan) => peers::measure(&plan),
     }
 }

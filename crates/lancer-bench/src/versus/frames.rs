@@ -206,7 +206,6 @@ fn picture(stage: &Stage, directions: u32) -> Result<Picture, Failure> {
         samples: directions,
         azimuths: HemisphereLattice::new(directions)
             .azimuths()
-            .iter()
             .map(|azimuth| azimuth.map(|x| x as f32))
             .collect(),
         reach: scene.settings.ao.distance as f32,

@@ -18,19 +18,20 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct HemisphereLattice {
     samples: u32,
-    /// The cosine and the sine of each azimuth, highest direction first.
-    azimuths: Vec<[f64; 2]>,
+    /// The cosines and the sines of the azimuths, lowest direction first.
+    cosines: Vec<f64>,
+    sines: Vec<f64>,
 }
 
 impl HemisphereLattice {
     /// The lattice of `samples` directions on the whole sphere; empty for 0.
     pub fn new(samples: u32) -> Self {
         let golden_ratio = 0.5 * (1.0 + 5.0_f64.sqrt());
-        let azimuth = |i: u32| {
-            let (sin, cos) = portable::sin_cos(TAU * (f64::from(i) / golden_ratio).fract());
-            [cos, sin]
-        };
-        Self { samples, azimuths: (0..samples.div_ceil(2)).map(azimuth).collect() }
+        let (sines, cosines) = (0..samples.div_ceil(2))
+            .rev()
+            .map(|i| portable::sin_cos(TAU * (f64::from(i) / golden_ratio).fract()))
+            .unzip();
+        Self { samples, cosines, sines }
     }
 
     /// N.
@@ -39,8 +40,8 @@ impl HemisphereLattice {
     }
 
     /// The cosine and the sine of the azimuth of each direction that may have weight, the highest first.
-    pub fn azimuths(&self) -> &[[f64; 2]] {
-        &self.azimuths
+    pub fn azimuths(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.cosines.iter().zip(&self.sines).rev().map(|(&cos, &sin)| [cos, sin])
     }
 
     /// The directions around a unit `normal`, from the lowest to the highest, shifted by two numbers of `stream`.
@@ -87,7 +88,7 @@ impl<'a> Shift<'a> {
 
     /// How many directions have weight.
     fn above(&self) -> usize {
-        let mut count = self.lattice.azimuths.len();
+        let mut count = self.lattice.cosines.len();
         while count > 0 && self.elevation(count - 1) <= 0.0 {
             count -= 1;
         }
@@ -105,12 +106,15 @@ impl<'a> Shift<'a> {
         let [tangent, bitangent, normal] = self.frame;
         let [turn_cos, turn_sin] = self.turn;
         let [xs, ys, zs] = &mut fan.components;
-        let azimuths = &self.lattice.azimuths[end - count..end];
-        for (i, &[cos, sin]) in azimuths.iter().rev().enumerate() {
+        let first = self.lattice.cosines.len() - end;
+        let cosines = &self.lattice.cosines[first..first + count];
+        let sines = &self.lattice.sines[first..first + count];
+        let (xs, ys, zs) = (&mut xs[..count], &mut ys[..count], &mut zs[..count]);
+        for i in 0..count {
             let elevation = fan.lowest + self.step * i as f64;
             let radius = (1.0 - elevation * elevation).max(0.0).sqrt();
-            let across = radius * (cos * turn_cos - sin * turn_sin);
-            let along = radius * (sin * turn_cos + cos * turn_sin);
+            let across = radius * (cosines[i] * turn_cos - sines[i] * turn_sin);
+            let along = radius * (sines[i] * turn_cos + cosines[i] * turn_sin);
             xs[i] = tangent.x * across + bitangent.x * along + normal.x * elevation;
             ys[i] = tangent.y * across + bitangent.y * along + normal.y * elevation;
             zs[i] = tangent.z * across + bitangent.z * along + normal.z * elevation;

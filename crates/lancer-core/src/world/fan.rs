@@ -6,6 +6,9 @@ use crate::accel::triangles::Receiver;
 use crate::geometry::{Bounds, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
 
+/// An elevation that no rounding makes negative.
+const CLEARLY_ABOVE: f64 = 1e-9;
+
 impl World {
     /// Which of the rays that leave a surface in the directions of a fan meet anything nearer than `reach`: a bit
     /// for each. The fan's normal must be [`Intersection::facing_normal`].
@@ -15,12 +18,16 @@ impl World {
     pub fn occluded_fan(&self, at: &Intersection, fan: &DirectionFan, reach: f64) -> u64 {
         let wanted = fan.all();
         let mut occluded = 0;
-        // An interpolated normal may have directions above it that go below the surface: their rays start on the
-        // other side of it.
         let mut together = 0;
-        for i in 0..fan.count {
-            let beneath = at.geometric_normal.dot(fan.direction(i)) < 0.0;
-            together |= u64::from(beneath == at.from_inside) << i;
+        if at.shading_normal == at.geometric_normal && fan.lowest > CLEARLY_ABOVE {
+            together = wanted;
+        } else {
+            // An interpolated normal may have directions above it that go below the surface: their rays start on
+            // the other side of it.
+            for i in 0..fan.count {
+                let beneath = at.geometric_normal.dot(fan.direction(i)) < 0.0;
+                together |= u64::from(beneath == at.from_inside) << i;
+            }
         }
         let by_objects = match &self.index {
             ObjectIndex::Bvh { .. } => true,
@@ -76,6 +83,10 @@ impl World {
     /// Calls `visit` with the bounded objects whose boxes are in reach and above the horizon, until it says no.
     fn visit_near(&self, rays: &FanRays, mut visit: impl FnMut(ObjectId) -> bool) {
         let ObjectIndex::Bvh { tree, .. } = &self.index else { return };
+        if self.bounded.len() <= Self::FEW {
+            let _all = self.bounded.iter().all(|&object| visit(object));
+            return;
+        }
         let mut stack = vec![0];
         while let Some(index) = stack.pop() {
             let node = &tree.nodes()[index];

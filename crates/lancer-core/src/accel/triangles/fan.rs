@@ -17,7 +17,7 @@ use crate::accel::bvh::{Child, WIDTH};
 use crate::geometry::{DMat3, DVec3, DirectionFan};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16};
+use fearless_simd::{f32x4, f32x8, f32x16, i32x4, i32x8};
 
 const FAN: usize = DirectionFan::CAPACITY;
 
@@ -70,12 +70,15 @@ impl Fan {
         let mut inverse = [[0.0; FAN]; 3];
         let columns = receiver.from_world.to_cols_array();
         let [x, y, z] = &directions.components;
+        let used = directions.count.next_multiple_of(LANES);
         for axis in 0..3 {
             let (a, b, c) = (columns[axis], columns[3 + axis], columns[6 + axis]);
-            for i in 0..FAN {
-                let component = a * x[i] + b * y[i] + c * z[i];
-                direction[axis][i] = component as f32;
-                inverse[axis][i] = (1.0 / component.abs().max(LEAST_COMPONENT).copysign(component)) as f32;
+            for i in 0..used {
+                direction[axis][i] = (a * x[i] + b * y[i] + c * z[i]) as f32;
+            }
+            for i in 0..used {
+                let component = direction[axis][i];
+                inverse[axis][i] = 1.0 / component.abs().max(LEAST_COMPONENT as f32).copysign(component);
             }
         }
         let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
@@ -94,15 +97,6 @@ impl Fan {
             per_step: (1.0 / directions.step) as f32,
             own: receiver.own.unwrap_or(u32::MAX),
         }
-    }
-
-    /// The directions that are not above an elevation; more where rounding leaves it open.
-    #[inline(always)]
-    fn up_to(&self, elevation: f32) -> u64 {
-        let count = (elevation * (1.0 + 1e-5) - self.lowest) * self.per_step + 1.01;
-        // Negative numbers become 0; so does what is not a number, which cannot be.
-        let count = count.min(FAN as f32) as u32;
-        if count == 0 { 0 } else { u64::MAX >> (FAN as u32 - count) }
     }
 
     /// One direction as a ray.
@@ -215,14 +209,16 @@ fn node_of_fan<S: Simd>(
     let elevation = height / squared.sqrt();
     // A box around the point concerns every direction.
     let around = squared.simd_le(zero);
-    let elevation: [f32; WIDTH] = around.select(splat(2.0), elevation).into();
+    let elevation = around.select(splat(2.0), elevation);
+    let counts = (elevation * (1.0 + 1e-5) - fan.lowest) * fan.per_step + 1.01;
+    let counts: [i32; WIDTH] = counts.min(splat(FAN as f32)).max(zero).to_int::<i32x8<S>>().into();
     let around = around.to_bitmask() as u32;
     let low: [[f32; WIDTH]; 3] = [low[0].into(), low[1].into(), low[2].into()];
     let high: [[f32; WIDTH]; 3] = [high[0].into(), high[1].into(), high[2].into()];
     while met != 0 {
         let child = met.trailing_zeros() as usize;
         met &= met - 1;
-        let mut candidates = mask & fan.up_to(elevation[child]);
+        let mut candidates = mask & prefix(counts[child]);
         if around >> child & 1 == 0 {
             let corner = |side: &[[f32; WIDTH]; 3]| [side[0][child], side[1][child], side[2][child]];
             candidates = slab(simd, fan, corner(&low), corner(&high), candidates);
@@ -231,6 +227,12 @@ fn node_of_fan<S: Simd>(
             stack.push((node.children[child], candidates));
         }
     }
+}
+
+/// The bits below `count`, from 0 to 64.
+#[inline(always)]
+fn prefix(count: i32) -> u64 {
+    if count == 0 { 0 } else { u64::MAX >> (FAN as i32 - count) }
 }
 
 /// Which of the directions meet a box, given as seen from the point.
@@ -286,7 +288,14 @@ fn block_of_fan<S: Simd>(
     }
     // The planes through the point and an edge: a direction passes the triangle inside of all three, or outside.
     let (ab, bc, ca) = (cross(a, b), cross(b, c), cross(c, a));
-    let elevation: [f32; BLOCK] = highest(simd, fan, [a, b, c], [ha, hb, hc], [ab, bc, ca]).into();
+    // Where few directions are left, they are tested sooner than the bound that would rule them out is known.
+    let counts: [i32; BLOCK] = if mask >> LANES == 0 {
+        [FAN as i32; BLOCK]
+    } else {
+        let elevation = highest(simd, fan, [a, b, c], [ha, hb, hc], [ab, bc, ca]);
+        let counts = (elevation * (1.0 + 1e-5) - fan.lowest) * fan.per_step + 1.01;
+        counts.min(splat(FAN as f32)).max(zero).to_int::<i32x4<S>>().into()
+    };
     let error = size * (size * (64.0 * UNIT_ROUNDOFF) + fan.error * 16.0);
     let volume = dot(a, bc);
     let volume_error = size * error * 2.0;
@@ -302,7 +311,7 @@ fn block_of_fan<S: Simd>(
         if block.ids[lane] == fan.own {
             continue;
         }
-        let candidates = mask & !hit & fan.up_to(elevation[lane]);
+        let candidates = mask & !hit & prefix(counts[lane]);
         let edge = |i: usize| [edges[i][0][lane], edges[i][1][lane], edges[i][2][lane]];
         let cone = Cone {
             edges: [edge(0), edge(1), edge(2)],
