@@ -3,6 +3,7 @@
 use super::Image;
 use crate::color::linear_to_srgb;
 use crate::geometry::portable;
+use std::sync::LazyLock;
 
 /// How radiance becomes a displayable value. By default it is left alone, then clamped to [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +22,49 @@ impl Tone {
 
 /// The image as 8-bit sRGB, clamped to [0, 1] and rounded to nearest. Shape: `[height * width][3]`.
 pub fn to_srgb8(image: &Image) -> Vec<[u8; 3]> {
-    image.pixels().iter().map(|pixel| pixel.map(encode)).collect()
+    let codes = LazyLock::force(&CODES);
+    image.pixels().iter().map(|pixel| pixel.map(|channel| codes.of(channel))).collect()
+}
+
+static CODES: LazyLock<Codes> = LazyLock::new(Codes::new);
+
+/// The encoding as a table: the power in it takes longer than some rays.
+struct Codes {
+    /// The least value of each code; beyond the last, infinity.
+    least: [f32; 257],
+    /// The code at the start of each range of values that share their upper bits.
+    first: Vec<u8>,
+}
+
+impl Codes {
+    /// Leaves six bits of the mantissa: about one code to a range where codes are densest.
+    const SHIFT: u32 = 17;
+
+    fn new() -> Self {
+        let mut least = [0.0; 257];
+        least[256] = f32::INFINITY;
+        for code in 1..=255_u8 {
+            // Positive floats are ordered as their bits are.
+            let (mut below, mut at) = (0, 1.0_f32.to_bits());
+            while at - below > 1 {
+                let middle = below + (at - below) / 2;
+                if encode(f32::from_bits(middle)) < code { below = middle } else { at = middle }
+            }
+            least[usize::from(code)] = f32::from_bits(at);
+        }
+        let ranges = 0..=1.0_f32.to_bits() >> Self::SHIFT;
+        Self { least, first: ranges.map(|range| encode(f32::from_bits(range << Self::SHIFT))).collect() }
+    }
+
+    fn of(&self, linear: f32) -> u8 {
+        // What is not a number becomes 0.
+        let value = linear.clamp(0.0, 1.0).max(0.0);
+        let mut code = self.first[(value.to_bits() >> Self::SHIFT) as usize];
+        while value >= self.least[usize::from(code) + 1] {
+            code += 1;
+        }
+        code
+    }
 }
 
 fn encode(linear: f32) -> u8 {
@@ -37,6 +80,19 @@ mod tests {
         for value in 0..=255_u8 {
             let linear = crate::color::srgb_to_linear(f64::from(value) / 255.0);
             assert_eq!(encode(linear as f32), value);
+        }
+    }
+
+    #[test]
+    fn the_table_says_what_the_formula_says() {
+        let near_steps = CODES.least[1..256].iter().flat_map(|least| {
+            let bits = least.to_bits();
+            (bits - 200..bits + 200).map(f32::from_bits)
+        });
+        let everywhere = (0..=1_000_000).map(|i| i as f32 / 1e6);
+        let odd = [-1.0, -0.0, 1.0, 7.0, f32::MIN_POSITIVE, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        for value in near_steps.chain(everywhere).chain(odd) {
+            assert_eq!(CODES.of(value), encode(value), "{value}");
         }
     }
 

@@ -26,7 +26,7 @@ const LANES: usize = 16;
 
 /// Where this many directions or fewer are left to a node, they go on one by one: eight boxes for one ray then do
 /// more than sixteen directions for one box, most of them idle.
-const ALONE: u32 = 4;
+const ALONE: u32 = 12;
 
 /// A point to look around from, in the space of a mesh.
 #[derive(Clone, Copy, Debug)]
@@ -456,7 +456,7 @@ fn alone<S: Simd>(
     let block_ray = BlockRay::new(simd, &ray);
     let sure_end = fan.reach * (1.0 - 1e-5);
     let mut found = false;
-    walk_from::<S, false>(simd, &tree.nodes, start, &ray, |leaf| {
+    walk_from::<S, true>(simd, &tree.nodes, start, &ray, |leaf| {
         let mut left = leaf.count();
         for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
             let verdict = block.test(simd, &block_ray, left.min(BLOCK), ray.end);
