@@ -185,7 +185,8 @@ mod tests {
                 let mut estimate = [0.0; 2];
                 for (direction, elevation) in directions(samples, normal, key) {
                     estimate[0] += elevation / f64::from(samples);
-                    estimate[1] += elevation * tangent.dot(direction).powi(2) / f64::from(samples);
+                    let across = tangent.dot(direction);
+                    estimate[1] += elevation * across * across / f64::from(samples);
                 }
                 for i in 0..2 {
                     sums[i] += estimate[i];

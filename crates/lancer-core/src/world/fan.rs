@@ -126,7 +126,8 @@ impl FanRays<'_> {
     fn receiver(&self, id: ObjectId, object: &Object) -> Option<Receiver> {
         let placement = &object.placement;
         let (shortest, longest) = placement.stretch_to_object();
-        if !(shortest * 100.0 > longest) {
+        let stretched = shortest * 100.0 <= longest || !longest.is_finite();
+        if stretched {
             return None;
         }
         let scale = 1.0 / longest;

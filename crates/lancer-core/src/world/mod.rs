@@ -255,7 +255,7 @@ impl World {
         match &self.index {
             // A few objects are looked at one by one: each looks at its own bounds first.
             _ if self.bounded.len() <= Self::FEW => self.visit_all_bounded(visit),
-            ObjectIndex::Bvh { tree, level } => match NarrowRay::new(&ray, &self.bounds) {
+            ObjectIndex::Bvh { tree, level } => match NarrowRay::prepare(&ray, &self.bounds) {
                 Narrowed::Misses => {}
                 Narrowed::Ready(narrow) => {
                     let mut visit_leaf = |leaf: Child| {

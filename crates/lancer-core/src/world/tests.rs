@@ -5,7 +5,9 @@ use crate::accel::Accelerator;
 
 use crate::geometry::{DVec3, Transform};
 use crate::mesh::{Mesh, MeshData};
+use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::{Node, Scene, Shape, Texture};
+use crate::simd::InstructionSet;
 use crate::testing::{Random, ball, soup};
 use std::sync::Arc;
 
@@ -340,4 +342,62 @@ fn media_around_a_point_are_the_objects_that_it_is_inside_of() {
     assert_eq!(Media::around(&world, DVec3::ZERO).ior(&world), 1.33);
     assert_eq!(Media::around(&world, DVec3::X * 2.0).ior(&world), 1.5);
     assert_eq!(Media::around(&world, DVec3::X * 4.0).ior(&world), 1.0);
+}
+
+/// Meshes with and without normals, shapes, instances, planes; stretched, mirrored and far away.
+fn gathering(random: &mut Random) -> Scene {
+    let mut scene = Scene::new("crowd");
+    scene.add(Node::shape("floor", Shape::Plane).with_transform(Transform::translate(DVec3::Y * -1.2)));
+    let mut smooth = ball(8, 12);
+    smooth.normals = smooth.positions.clone();
+    let meshes = [Mesh::new(smooth).unwrap(), Mesh::new(ball(6, 9)).unwrap(), soup(11, 60)].map(Arc::new);
+    for (i, mesh) in meshes.iter().cycle().take(6).enumerate() {
+        let transform = match i {
+            0 => Transform::IDENTITY,
+            1 => Transform::scale(DVec3::splat(0.5)).then(Transform::translate(random.point(1.0))),
+            _ => random.transform(0.5, 1.0),
+        };
+        scene.add(Node::shape("mesh", Shape::Mesh(Arc::clone(mesh))).with_transform(transform));
+    }
+    for shape in [Shape::Sphere, Shape::Cube, Shape::Cylinder { capped: true }] {
+        scene.add(Node::shape("shape", shape).with_transform(random.transform(0.3, 1.5)));
+    }
+    scene
+}
+
+#[test]
+fn a_fan_is_occluded_where_its_rays_are() {
+    let mut random = Random::new(21);
+    let (mut open, mut shut) = (0, 0);
+    for round in 0..6 {
+        let scene = gathering(&mut random);
+        let compile = |accelerator, instructions| {
+            let options = CompileOptions { accelerator, instructions, ..CompileOptions::default() };
+            World::compile(&scene, &options).unwrap()
+        };
+        let oracle = compile(Accelerator::BruteForce, None);
+        let sets = InstructionSet::ALL.into_iter().filter(|set| set.is_available());
+        let mut worlds: Vec<_> = sets.map(|set| compile(Accelerator::Bvh, Some(set))).collect();
+        worlds.push(compile(Accelerator::KdTree, None));
+        let lattice = HemisphereLattice::new(90);
+        for point in 0..60 {
+            let ray = Ray::new(random.point(3.0), random.direction());
+            let Some(hit) = oracle.intersect(&ray) else { continue };
+            let at = oracle.intersection(&ray, &hit);
+            let reach = [0.01, 0.3, 2.0, f64::INFINITY][random.below(4)];
+            let mut stream = Key::camera(point, round, 0).stream();
+            for fan in lattice.around(at.facing_normal(), &mut stream) {
+                let expected = (0..fan.count).fold(0_u64, |bits, i| {
+                    let ray = Ray { t_max: reach, ..at.spawn(fan.direction(i)) };
+                    bits | u64::from(oracle.occluded(&ray)) << i
+                });
+                for world in &worlds {
+                    assert_eq!(world.occluded_fan(&at, &fan, reach), expected, "{ray:?} {reach}");
+                }
+                open += fan.count as u32 - expected.count_ones();
+                shut += expected.count_ones();
+            }
+        }
+    }
+    assert!(open > 1000 && shut > 1000, "{open} open, {shut} shut");
 }

@@ -84,7 +84,7 @@ impl TriangleTree {
 
     /// The nearest hit; of several at the same t, the lowest triangle's.
     pub(crate) fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        match NarrowRay::new(ray, &self.bounds) {
+        match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => None,
             Narrowed::Ready(narrow) => {
                 dispatch!(self.level, simd => single::intersect(simd, self, ray, &narrow))
@@ -95,7 +95,7 @@ impl TriangleTree {
 
     /// Whether anything is hit.
     pub(crate) fn occluded(&self, ray: &Ray) -> bool {
-        match NarrowRay::new(ray, &self.bounds) {
+        match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => false,
             Narrowed::Ready(narrow) => {
                 dispatch!(self.level, simd => single::occluded(simd, self, ray, &narrow))
@@ -113,12 +113,12 @@ impl TriangleTree {
         wanted: u64,
         mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> Option<u64> {
-        if !ray::in_range(&self.bounds, receiver.point) || !(receiver.reach > 1e-12) {
-            return None;
-        }
-        Some(dispatch!(self.level, simd => {
-            fan::occluded(simd, self, receiver, directions, wanted, &mut decide)
-        }))
+        let in_range = ray::in_range(&self.bounds, receiver.point) && receiver.reach > 1e-12;
+        in_range.then(|| {
+            dispatch!(self.level, simd => {
+                fan::occluded(simd, self, receiver, directions, wanted, &mut decide)
+            })
+        })
     }
 
     /// The nearest hit, in `f64` throughout: for the rare ray whose numbers leave the range of `f32`.

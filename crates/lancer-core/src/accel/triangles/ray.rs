@@ -53,7 +53,7 @@ pub(super) const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 impl NarrowRay {
     /// Prepares a ray for what lies within `bounds`, which are finite and not empty.
     #[inline]
-    pub(crate) fn new(ray: &Ray, bounds: &Bounds) -> Narrowed {
+    pub(crate) fn prepare(ray: &Ray, bounds: &Bounds) -> Narrowed {
         let length = ray.direction.abs().max_element();
         let scale = 1.0 / length;
         let direction = ray.direction * scale;
