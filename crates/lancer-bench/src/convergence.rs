@@ -1,4 +1,4 @@
-//! The error of c_a against N: the renderer's turned lattice beside independent random directions.
+//! The error of c_a against N: the renderer's lattice beside independent random directions.
 //!
 //! The sites are points of a floor whose c_a is known in closed form, so that the error is one against the truth
 //! and not against another estimate.
@@ -30,7 +30,7 @@ struct Site {
 pub(crate) fn measure(output: &Path) -> Result<(), Failure> {
     let sites = sites()?;
     let mut lattice =
-        Curve { name: "turned spherical Fibonacci lattice", color: "#0b6e99", points: Vec::new() };
+        Curve { name: "shifted spherical Fibonacci lattice", color: "#0b6e99", points: Vec::new() };
     let mut independent =
         Curve { name: "independent random directions", color: "#c0392b", points: Vec::new() };
     println!("{:>6}  {:>12}  {:>12}  {:>6}", "N", "lattice", "independent", "ratio");

@@ -1,6 +1,6 @@
 //! The directions of ambient occlusion at a pixel: the one place that knows how Lancer chooses them.
 
-use lancer_core::geometry::{DVec3, portable};
+use lancer_core::geometry::{DVec3, DirectionFan, portable};
 use lancer_core::sampling::{HemisphereLattice, Key};
 use std::f64::consts::TAU;
 
@@ -14,7 +14,6 @@ pub(crate) fn shift(x: u32, y: u32) -> [f32; 3] {
 }
 
 /// The directions of a pixel above the horizon, from the lowest to the highest.
-pub(crate) fn around(lattice: &HemisphereLattice, normal: DVec3, x: u32, y: u32) -> Vec<DVec3> {
-    let fans = lattice.around(normal, &mut Key::camera(x, y, 0).stream());
-    fans.flat_map(|fan| (0..fan.count).map(move |i| fan.direction(i))).collect()
+pub(crate) fn around(lattice: &HemisphereLattice, normal: DVec3, x: u32, y: u32) -> Vec<DirectionFan> {
+    lattice.around(normal, &mut Key::camera(x, y, 0).stream()).collect()
 }

@@ -7,15 +7,17 @@ use super::{Plan, lancer_side};
 use crate::Failure;
 use crate::embree::ffi::{Build, Device, Quality, Scene};
 use crate::record::{Ratio, median, seconds};
-use lancer_core::geometry::Ray;
+use lancer_core::geometry::{DirectionFan, Ray};
 use lancer_core::render::with_threads;
-use lancer_core::world::{CompileOptions, Hit, World};
+use lancer_core::world::{CompileOptions, Hit, Intersection, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// Rays that one call of Lancer gets.
 const CHUNK: usize = 1024;
+/// Points that one call of Lancer gets.
+const FANS: usize = 64;
 
 pub(super) const HEADING: &str =
     "\nRays, millions a second. Ratios are Lancer's to Embree's, medians over the runs \
@@ -148,6 +150,13 @@ impl Rates {
 
 /// Traces a lot on the threads of the current pool. Returns how many rays met something.
 pub(super) fn trace(world: &World, lot: &Lot) -> usize {
+    if !lot.fans.is_empty() {
+        let count = |blocked: &mut Vec<bool>, fans: &[(Intersection, DirectionFan)]| {
+            lancer_side::occluded_fans(world, fans, lot.reach, blocked);
+            blocked.iter().filter(|blocked| **blocked).count()
+        };
+        return lot.fans.par_chunks(FANS).map_init(Vec::new, count).sum();
+    }
     let chunks = lot.rays.par_chunks(CHUNK);
     if lot.kind.is_occlusion() {
         let count = |blocked: &mut Vec<bool>, rays: &[Ray]| {
@@ -179,7 +188,11 @@ impl Difference {
         let theirs = prepared.answers(scene, form);
         let ours: Vec<Option<Met>> = if lot.kind.is_occlusion() {
             let mut blocked = Vec::new();
-            lancer_side::occluded(world, &lot.rays, &mut blocked);
+            if lot.fans.is_empty() {
+                lancer_side::occluded(world, &lot.rays, &mut blocked);
+            } else {
+                lancer_side::occluded_fans(world, &lot.fans, lot.reach, &mut blocked);
+            }
             blocked.iter().map(|blocked| blocked.then_some(Met { t: 0.0, object: 0, primitive: 0 })).collect()
         } else {
             let mut hits = Vec::new();

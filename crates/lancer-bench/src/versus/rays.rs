@@ -3,10 +3,10 @@
 use super::directions;
 use super::stage::{HEIGHT, Stage, WIDTH};
 use crate::Failure;
-use lancer_core::geometry::{DVec3, Ray};
+use lancer_core::geometry::{DVec3, DirectionFan, Ray};
 use lancer_core::sampling::HemisphereLattice;
 use lancer_core::shade::reflect;
-use lancer_core::world::World;
+use lancer_core::world::{Intersection, World};
 use rayon::prelude::*;
 
 /// Rays of a packet.
@@ -48,6 +48,9 @@ pub(super) struct Lot {
     /// In the order of tiles of 8 x 8 pixels, each of four blocks of 4 x 4.
     pub(super) rays: Vec<Ray>,
     pub(super) groupings: Vec<(&'static str, Vec<Packet>)>,
+    /// The same rays by the point that they leave, for kinds that have many of one.
+    pub(super) fans: Vec<(Intersection, DirectionFan)>,
+    pub(super) reach: f64,
 }
 
 /// A point that the camera sees.
@@ -59,6 +62,7 @@ struct Seen {
     point: DVec3,
     normal: DVec3,
     incoming: DVec3,
+    at: Intersection,
 }
 
 /// How far rays start off the surface, of the scene's diagonal: a hundred steps of `f32`. Nearer, some meet the
@@ -87,7 +91,7 @@ pub(super) fn lots(stage: &Stage, world: &World) -> Result<Vec<Lot>, Failure> {
             let at = world.intersection(ray, &world.intersect(ray)?);
             let normal = at.facing_geometric_normal();
             let point = rounded(at.point + normal * (OFF_SURFACE * stage.diagonal));
-            Some(Seen { x, y, point, normal, incoming: ray.direction })
+            Some(Seen { x, y, point, normal, incoming: ray.direction, at })
         })
         .collect();
     let light = rounded(stage.scene.lights[0].position);
@@ -99,7 +103,7 @@ pub(super) fn lots(stage: &Stage, world: &World) -> Result<Vec<Lot>, Failure> {
         .map(|first| std::array::from_fn(|lane| every(first + lane)))
         .collect();
     Ok(vec![
-        Lot { kind: Kind::Primary, rays: primary, groupings: vec![("4x4 pixels", whole)] },
+        Lot::new(Kind::Primary, primary, whole),
         secondary(Kind::Shadow, &seen, shadow),
         secondary(Kind::Mirror, &seen, mirror),
         ambient_occlusion(&seen, stage.scene.settings.ao.distance),
@@ -131,7 +135,28 @@ fn secondary(kind: Kind, seen: &[Option<Seen>], ray: impl Fn(&Seen) -> Ray) -> L
         packets.push(packet);
     }
     packets.retain(is_used);
-    Lot { kind, rays, groupings: vec![("4x4 pixels", packets)] }
+    Lot::new(kind, rays, packets)
+}
+
+impl Lot {
+    fn new(kind: Kind, rays: Vec<Ray>, packets: Vec<Packet>) -> Self {
+        let groupings = vec![("4x4 pixels", packets)];
+        Self { kind, rays, groupings, fans: Vec::new(), reach: f64::INFINITY }
+    }
+}
+
+impl Seen {
+    /// The point as a place to leave from, without a step further off.
+    fn leaving(&self) -> Intersection {
+        Intersection {
+            point: self.point,
+            point_error: DVec3::ZERO,
+            geometric_normal: self.normal,
+            shading_normal: self.normal,
+            from_inside: false,
+            ..self.at
+        }
+    }
 }
 
 fn is_used(packet: &Packet) -> bool {
@@ -145,6 +170,7 @@ fn ambient_occlusion(seen: &[Option<Seen>], reach: f64) -> Lot {
     let points = seen.iter().flatten().count();
     let every = (points * AO_DIRECTIONS as usize / 2).div_ceil(MOST_AO_RAYS).max(1);
     let mut rays = Vec::new();
+    let mut fans = Vec::new();
     let mut of_one_point = Vec::new();
     let mut same_index = Vec::new();
     let mut by_direction = Vec::new();
@@ -159,7 +185,9 @@ fn ambient_occlusion(seen: &[Option<Seen>], reach: f64) -> Lot {
                 let Some(seen) = seen else { continue };
                 let first = rays.len();
                 let around = directions::around(&lattice, seen.normal, seen.x, seen.y);
-                for (index, direction) in around.into_iter().enumerate() {
+                fans.extend(around.iter().map(|fan| (seen.leaving(), fan.clone())));
+                let around = around.iter().flat_map(|fan| (0..fan.count).map(|i| fan.direction(i)));
+                for (index, direction) in around.enumerate() {
                     across[index][lane] = rays.len() as u32;
                     rays.push(Ray { t_max: reach, ..exact(seen.point, direction) });
                 }
@@ -175,7 +203,7 @@ fn ambient_occlusion(seen: &[Option<Seen>], reach: f64) -> Lot {
     }
     let groupings =
         vec![("one point", of_one_point), ("4x4 same index", same_index), ("8x8 by direction", by_direction)];
-    Lot { kind: Kind::AmbientOcclusion, rays, groupings }
+    Lot { kind: Kind::AmbientOcclusion, rays, groupings, fans, reach }
 }
 
 /// As many full packets as there are, and a last one.

@@ -111,14 +111,15 @@ struct Arrival<'a> {
 impl<L: Listener> Walk<'_, '_, L> {
     fn run(&mut self, first: PendingRay) -> Rgb {
         self.pending.clear();
-        self.pending.push_back(first);
         let mut radiance = Rgb::BLACK;
         let mut id = 0;
-        while let Some(pending) = self.pending.pop_front() {
+        let mut next = Some(first);
+        while let Some(pending) = next {
             self.count(pending.kind);
             self.listener.begin_ray(RayId(id), pending.kind, pending.throughput, &pending.ray);
             radiance += self.trace(RayId(id), &pending) * pending.throughput;
             id += 1;
+            next = self.pending.pop_front();
         }
         radiance
     }
