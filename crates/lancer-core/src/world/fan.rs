@@ -2,12 +2,16 @@
 
 use super::geometry::{Geometry, TriangleIndex};
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
-use crate::accel::triangles::Receiver;
-use crate::geometry::{Bounds, DVec3, DirectionFan, Ray};
+use crate::accel::bvh::Child;
+use crate::accel::triangles::{Receiver, visit_fan};
+use crate::geometry::{DMat3, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
 
 /// An elevation that no rounding makes negative.
 const CLEARLY_ABOVE: f64 = 1e-9;
+
+/// So many directions or fewer go through a mesh one by one: a fan costs some time to make ready. Untuned.
+const ALONE: u32 = 6;
 
 impl World {
     /// Which of the rays that leave a surface in the directions of a fan meet anything nearer than `reach`: a bit
@@ -46,10 +50,7 @@ impl World {
             for &id in &self.unbounded {
                 open &= !self.occluded_by(id, &rays, open);
             }
-            self.visit_near(&rays, |id| {
-                open &= !self.occluded_by(id, &rays, open);
-                open != 0
-            });
+            open &= !self.occluded_by_bounded(&rays, open);
             occluded |= together & !open;
         }
         occluded
@@ -61,7 +62,8 @@ impl World {
             return 0;
         }
         let object = self.object(id);
-        if let Geometry::Mesh(mesh) = object.geometry
+        if wanted.count_ones() > ALONE
+            && let Geometry::Mesh(mesh) = object.geometry
             && let TriangleIndex::Bvh(tree) = &self.meshes[mesh as usize].index
             && let Some(receiver) = rays.receiver(id, object)
         {
@@ -80,32 +82,30 @@ impl World {
         occluded
     }
 
-    /// Calls `visit` with the bounded objects whose boxes are in reach and above the horizon, until it says no.
-    fn visit_near(&self, rays: &FanRays, mut visit: impl FnMut(ObjectId) -> bool) {
-        let ObjectIndex::Bvh { tree, .. } = &self.index else { return };
-        if self.bounded.len() <= Self::FEW {
-            let _all = self.bounded.iter().all(|&object| visit(object));
-            return;
+    /// Which of the rays `wanted` a bounded object stops.
+    fn occluded_by_bounded(&self, rays: &FanRays, wanted: u64) -> u64 {
+        let mut open = wanted;
+        let mut found = false;
+        if let ObjectIndex::Bvh { tree, level } = &self.index
+            && self.bounded.len() > Self::FEW
+        {
+            let visit = |leaf: Child, mask: u64| {
+                let mut hit = 0;
+                for &place in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
+                    hit |= self.occluded_by(self.bounded[place as usize], rays, mask & !hit);
+                }
+                open &= !hit;
+                hit
+            };
+            let receiver = rays.in_world();
+            found = visit_fan(*level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, visit);
         }
-        let mut stack = vec![0];
-        while let Some(index) = stack.pop() {
-            let node = &tree.nodes()[index];
-            for place in 0..node.children.len() {
-                let child = node.child(place);
-                if child.is_none() || !rays.may_meet(&node.bounds(place).to_bounds()) {
-                    continue;
-                }
-                if child.is_leaf() {
-                    for &object in &tree.order()[child.first()..child.first() + child.count()] {
-                        if !visit(self.bounded[object as usize]) {
-                            return;
-                        }
-                    }
-                } else {
-                    stack.push(child.node());
-                }
+        if !found {
+            for &id in &self.bounded {
+                open &= !self.occluded_by(id, rays, open);
             }
         }
+        wanted & !open
     }
 }
 
@@ -140,18 +140,14 @@ impl FanRays<'_> {
         })
     }
 
-    /// Whether any part of a box is in reach and above the horizon; never false where a ray meets it.
-    fn may_meet(&self, bounds: &Bounds) -> bool {
-        let slack = (bounds.magnitude() + self.origin.abs()) * (64.0 * f64::EPSILON);
-        let low = bounds.min - slack - self.origin;
-        let high = bounds.max + slack - self.origin;
-        let outside = low.max(-high).max(DVec3::ZERO);
-        if outside.length_squared() * (1.0 - 1e-12) > self.reach * self.reach {
-            return false;
+    fn in_world(&self) -> Receiver {
+        Receiver {
+            point: self.origin,
+            normal: self.at.facing_normal(),
+            from_world: DMat3::IDENTITY,
+            reach: self.reach,
+            own: None,
         }
-        let normal = self.at.facing_normal();
-        let top = (normal * low).max(normal * high);
-        top.element_sum() + slack.element_sum() >= 0.0
     }
 }
 

@@ -5,7 +5,7 @@
 //! canonical test in `f64`.
 
 use super::lanes::{add, cross, dot, load3, splat3, sub};
-use super::ray::{NarrowRay, UNIT_ROUNDOFF};
+use super::ray::{NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 
@@ -120,9 +120,9 @@ impl Block {
         // the numerator. Derived in docs/kernels.md.
         let edge = largest(e1).max(largest(e2));
         let reach = largest(from_a);
-        let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + ray.origin_error * 8.0);
-        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF);
-        let numerator_error = error * edge;
+        let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + ray.origin_error * 8.0) + UNDERFLOW;
+        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
+        let numerator_error = error * edge + UNDERFLOW;
         let sum_error = error * 3.0 + denominator_error * 2.0;
         let rest = denominator - u - v;
         let limit = denominator * end;

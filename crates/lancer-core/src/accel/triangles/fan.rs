@@ -11,10 +11,10 @@
 use super::TriangleTree;
 use super::block::{BLOCK, Block, BlockRay};
 use super::lanes::{cross, dot, load3, splat3, sub};
-use super::ray::{LEAST_COMPONENT, NarrowRay, UNIT_ROUNDOFF};
+use super::ray::{LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
 use super::walk::{STACK, walk_from};
-use crate::accel::bvh::{Child, WIDTH};
-use crate::geometry::{DMat3, DVec3, DirectionFan};
+use crate::accel::bvh::{Child, WIDTH, WideNode};
+use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, i32x4, i32x8};
@@ -154,7 +154,7 @@ pub(super) fn occluded<S: Simd>(
                 }
             }
         } else {
-            node_of_fan(simd, fan, tree, child, mask, &mut stack);
+            node_of_fan(simd, fan, &tree.nodes[child.node()], mask, &mut stack);
         }
         if open == 0 {
             break;
@@ -163,17 +163,45 @@ pub(super) fn occluded<S: Simd>(
     wanted & !open
 }
 
+/// Calls `visit` with the leaves of a hierarchy that some of the directions `wanted` may meet, and with which; it
+/// returns those that are done with.
+#[inline(always)]
+pub(super) fn leaves<S: Simd>(
+    simd: S,
+    nodes: &[WideNode],
+    bounds: &Bounds,
+    receiver: &Receiver,
+    directions: &DirectionFan,
+    wanted: u64,
+    visit: &mut impl FnMut(Child, u64) -> u64,
+) {
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let fan = &Fan::new(receiver, directions, size);
+    let mut open = wanted;
+    let mut stack = ArrayVec::<(Child, u64), STACK>::new();
+    stack.push((Child::inner(0), wanted));
+    while let Some((child, mask)) = stack.pop() {
+        let mask = mask & open;
+        if mask == 0 {
+            continue;
+        }
+        if child.is_leaf() {
+            open &= !visit(child, mask);
+        } else {
+            node_of_fan(simd, fan, &nodes[child.node()], mask, &mut stack);
+        }
+    }
+}
+
 /// Adds the children of a node that some directions may meet.
 #[inline(always)]
 fn node_of_fan<S: Simd>(
     simd: S,
     fan: &Fan,
-    tree: &TriangleTree,
-    parent: Child,
+    node: &WideNode,
     mask: u64,
     stack: &mut ArrayVec<(Child, u64), STACK>,
 ) {
-    let node = &tree.nodes[parent.node()];
     let splat = |x: f32| f32x8::splat(simd, x);
     let zero = splat(0.0);
     let point: [f32x8<S>; 3] = splat3(simd, fan.point);
@@ -296,9 +324,9 @@ fn block_of_fan<S: Simd>(
         let counts = (elevation * (1.0 + 1e-5) - fan.lowest) * fan.per_step + 1.01;
         counts.min(splat(FAN as f32)).max(zero).to_int::<i32x4<S>>().into()
     };
-    let error = size * (size * (64.0 * UNIT_ROUNDOFF) + fan.error * 16.0);
+    let error = size * (size * (64.0 * UNIT_ROUNDOFF) + fan.error * 16.0) + UNDERFLOW;
     let volume = dot(a, bc);
-    let volume_error = size * error * 2.0;
+    let volume_error = size * error * 2.0 + UNDERFLOW;
     let edges: [[[f32; BLOCK]; 3]; 3] = [
         [ab[0].into(), ab[1].into(), ab[2].into()],
         [bc[0].into(), bc[1].into(), bc[2].into()],
@@ -358,10 +386,13 @@ fn highest<S: Simd>(
     let overhead = least.simd_ge(zero) | most.simd_le(zero);
     // A corner so near that its direction is not known, or a plane that is none.
     let blurred = aa.min(bb).min(cc).simd_le(splat(fan.error * fan.error * 1e9));
-    let known = squared.simd_ge(zero) & squared.simd_lt(splat(4.0));
+    let known = squared.simd_ge(zero) & squared.simd_lt(splat(UNKNOWN));
     let elevation = (squared + 4e-6).sqrt() + 1e-4;
     ((overhead | blurred) | !known).select(splat(2.0), elevation)
 }
+
+/// The square of an elevation of which nothing is known: above any that there is.
+const UNKNOWN: f32 = 4.0;
 
 /// The square of the elevation of a corner, from its height and the square of its distance.
 #[inline(always)]
@@ -384,7 +415,9 @@ fn of_edge<S: Simd>(
 ) -> f32x4<S> {
     // The elevation rises from both ends.
     let between = (hy * xx).simd_gt(hx * xy) & (hx * yy).simd_gt(hy * xy);
-    between.select(top - along * along / axis, f32x4::splat(simd, 0.0))
+    let height = between.select(top - along * along / axis, f32x4::splat(simd, 0.0));
+    // An axis too short to be told from underflow says nothing.
+    axis.simd_gt(f32x4::splat(simd, 1e-30)).select(height, f32x4::splat(simd, UNKNOWN))
 }
 
 /// A triangle as seen from the point.

@@ -27,6 +27,27 @@ use block::{BLOCK, Block};
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
+/// Calls `visit` with the leaves of a hierarchy within `bounds` that some of the directions `wanted` from a point may
+/// meet, and with which; it returns those that are done with. Says whether it could: not where the numbers leave the
+/// range of `f32`.
+pub(crate) fn visit_fan(
+    level: Level,
+    nodes: &[WideNode],
+    bounds: &Bounds,
+    receiver: &Receiver,
+    directions: &DirectionFan,
+    wanted: u64,
+    mut visit: impl FnMut(Child, u64) -> u64,
+) -> bool {
+    let in_range = ray::in_range(bounds, receiver.point) && receiver.reach > 1e-12;
+    if in_range {
+        dispatch!(level, simd => {
+            fan::leaves(simd, nodes, bounds, receiver, directions, wanted, &mut visit);
+        });
+    }
+    in_range
+}
+
 /// A mesh's triangles, ready to be searched.
 #[derive(Clone, Debug)]
 pub(crate) struct TriangleTree {

@@ -5,6 +5,10 @@ use crate::geometry::{Bounds, DVec3, Ray};
 /// Half the distance from 1 to the next `f32`: the relative error of one operation.
 pub(super) const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
 
+/// What a few products that are too small for `f32` may lose: far above the least `f32`, far below any error of a
+/// triangle worth seeing.
+pub(super) const UNDERFLOW: f32 = 1e-36;
+
 /// A ray made ready for the boxes and triangles within certain bounds.
 ///
 /// It is scaled so that its direction's largest component is 1 in size, and starts near the bounds even if the

@@ -144,15 +144,16 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
     // Directions from points near a soup of triangles, with all of the triangles in reach: what the fan finds for
     // each must be what the canonical test finds, whatever the bounds on elevation leave out.
     let mut random = Random::new(3);
-    for triangles in [3, 40, 400] {
-        let mesh = soup(5, triangles);
+    for (triangles, scale) in [(3, 1.0), (40, 1.0), (400, 1.0), (40, 2e-9), (40, 1e8)] {
+        let mesh = moved(soup(5, triangles).data().clone(), scale, 0.0);
+        let scale = f64::from(scale);
         for level in levels() {
             let tree = TriangleTree::build(&mesh, Quality::High, level).unwrap();
             for _ in 0..60 {
                 let normal = random.direction();
-                let point = random.point(1.0);
+                let point = random.point(1.0) * scale;
                 let fan = fan_around(normal, &mut random);
-                let reach = [0.2, 1.0, 10.0, f64::INFINITY][random.below(4)];
+                let reach = [0.2, 1.0, 10.0, f64::INFINITY][random.below(4)] * scale;
                 let receiver = Receiver {
                     point,
                     normal,
