@@ -4,7 +4,7 @@
 //! are compared with bounds on their error, so that they are known to be true, known to be false, or left to the
 //! canonical test in `f64`.
 
-use super::lanes::{add, cross, dot, load3, splat3, sub};
+use super::lanes::{add, cross, dot, largest, load3, splat3, sub};
 use super::ray::{NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
@@ -39,16 +39,15 @@ pub(super) struct Verdict<S: Simd> {
 }
 
 impl<S: Simd> Verdict<S> {
+    /// Where a triangle is hit at the soonest: at 0 where the denominator may vanish, since nothing is known then.
     #[inline(always)]
     pub(super) fn earliest(&self, lane: usize) -> f32 {
-        let low = (self.numerator[lane] - self.numerator_error[lane]).max(0.0);
-        low / (self.denominator[lane] + self.denominator_error[lane]) * (1.0 - 4.0 * UNIT_ROUNDOFF)
-    }
-
-    /// As [`Verdict::earliest`], where the denominator may vanish, so that nothing may be known.
-    #[inline(always)]
-    pub(super) fn earliest_unsure(&self, lane: usize) -> f32 {
-        if self.denominator[lane] > self.denominator_error[lane] { self.earliest(lane) } else { 0.0 }
+        if self.denominator[lane] > self.denominator_error[lane] {
+            let low = (self.numerator[lane] - self.numerator_error[lane]).max(0.0);
+            low / (self.denominator[lane] + self.denominator_error[lane]) * (1.0 - 4.0 * UNIT_ROUNDOFF)
+        } else {
+            0.0
+        }
     }
 
     #[inline(always)]
@@ -153,10 +152,4 @@ impl Block {
             denominator_error,
         }
     }
-}
-
-/// The largest component in size.
-#[inline(always)]
-fn largest<S: Simd>([x, y, z]: [f32x4<S>; 3]) -> f32x4<S> {
-    x.abs().max(y.abs()).max(z.abs())
 }

@@ -10,8 +10,10 @@
 
 use super::TriangleTree;
 use super::block::{BLOCK, Block, BlockRay};
-use super::lanes::{cross, dot, load3, splat3, sub};
-use super::ray::{LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
+use super::lanes::{cross, dot, largest, load3, splat3, sub};
+use super::ray::{
+    LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened,
+};
 use super::walk::{STACK, walk_from};
 use crate::accel::bvh::{Child, WIDTH, WideNode};
 use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
@@ -43,6 +45,16 @@ pub(crate) struct Receiver {
     pub(crate) own: Option<u32>,
 }
 
+impl Receiver {
+    /// Whether kernels can work on its rays within `bounds`.
+    pub(super) fn fits(&self, bounds: &Bounds) -> bool {
+        in_range(bounds, self.point) && self.reach > LEAST_REACH
+    }
+}
+
+/// The shortest reach that leaves products of it within the range of `f32`.
+const LEAST_REACH: f64 = 1e-12;
+
 /// The fan in `f32`, ready for a walk.
 struct Fan {
     direction: [[f32; FAN]; 3],
@@ -62,9 +74,9 @@ struct Fan {
 
 impl Fan {
     #[inline(always)]
-    fn new(receiver: &Receiver, directions: &DirectionFan, size: f64) -> Self {
+    fn new(receiver: &Receiver, directions: &DirectionFan, bounds: &Bounds) -> Self {
         let point = receiver.point;
-        let size = size.max(point.abs().max_element());
+        let size = size_of(bounds).max(point.abs().max_element());
         let error = size * (1024.0 * f64::EPSILON);
         let mut direction = [[0.0; FAN]; 3];
         let mut inverse = [[0.0; FAN]; 3];
@@ -81,17 +93,15 @@ impl Fan {
                 inverse[axis][i] = 1.0 / component.abs().max(LEAST_COMPONENT as f32).copysign(component);
             }
         }
-        let narrow = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32];
-        let hi = narrow(point);
-        let wide = DVec3::new(f64::from(hi[0]), f64::from(hi[1]), f64::from(hi[2]));
+        let narrow = narrowed(point);
         Self {
             direction,
             inverse,
-            point: hi,
-            point_rest: narrow(point - wide),
+            point: narrow,
+            point_rest: narrowed(point - widened(narrow)),
             error: error as f32,
             margin: 24.0 * UNIT_ROUNDOFF * size as f32 + error as f32,
-            normal: narrow(receiver.normal),
+            normal: narrowed(receiver.normal),
             reach: (receiver.reach.min(1e3 * size) * (1.0 + 1e-6)) as f32,
             lowest: directions.lowest as f32,
             per_step: (1.0 / directions.step) as f32,
@@ -127,8 +137,7 @@ pub(super) fn occluded<S: Simd>(
     wanted: u64,
     mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> u64 {
-    let size = tree.bounds.min.abs().max(tree.bounds.max.abs()).max_element();
-    let fan = &Fan::new(receiver, directions, size);
+    let fan = &Fan::new(receiver, directions, &tree.bounds);
     let mut open = wanted;
     let mut stack = ArrayVec::<(Child, u64), STACK>::new();
     stack.push((Child::inner(0), wanted));
@@ -175,8 +184,7 @@ pub(super) fn leaves<S: Simd>(
     wanted: u64,
     visit: &mut impl FnMut(Child, u64) -> u64,
 ) {
-    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let fan = &Fan::new(receiver, directions, size);
+    let fan = &Fan::new(receiver, directions, bounds);
     let mut open = wanted;
     let mut stack = ArrayVec::<(Child, u64), STACK>::new();
     stack.push((Child::inner(0), wanted));
@@ -525,9 +533,4 @@ impl Fan {
 fn group3<S: Simd>(simd: S, v: &[[f32; FAN]; 3], group: usize) -> [f32x16<S>; 3] {
     let of = |axis: usize| f32x16::from_slice(simd, &v[axis][group * LANES..(group + 1) * LANES]);
     [of(0), of(1), of(2)]
-}
-
-#[inline(always)]
-fn largest<S: Simd>([x, y, z]: [f32x4<S>; 3]) -> f32x4<S> {
-    x.abs().max(y.abs()).max(z.abs())
 }

@@ -25,6 +25,12 @@ pub(super) fn load3<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, v: &[V::Ar
     [V::load_array_ref(simd, &v[0]), V::load_array_ref(simd, &v[1]), V::load_array_ref(simd, &v[2])]
 }
 
+/// The largest component in size.
+#[inline(always)]
+pub(super) fn largest<S: Simd, V: SimdFloat<S>>([x, y, z]: [V; 3]) -> V {
+    x.abs().max(y.abs()).max(z.abs())
+}
+
 /// Products may be fused with the sums: kernels do not depend on how they round, only on how much.
 #[inline(always)]
 pub(super) fn dot<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> V {

@@ -39,13 +39,13 @@ pub(crate) fn visit_fan(
     wanted: u64,
     mut visit: impl FnMut(Child, u64) -> u64,
 ) -> bool {
-    let in_range = ray::in_range(bounds, receiver.point) && receiver.reach > 1e-12;
-    if in_range {
+    let fits = receiver.fits(bounds);
+    if fits {
         dispatch!(level, simd => {
             fan::leaves(simd, nodes, bounds, receiver, directions, wanted, &mut visit);
         });
     }
-    in_range
+    fits
 }
 
 /// A mesh's triangles, ready to be searched.
@@ -134,8 +134,7 @@ impl TriangleTree {
         wanted: u64,
         mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> Option<u64> {
-        let in_range = ray::in_range(&self.bounds, receiver.point) && receiver.reach > 1e-12;
-        in_range.then(|| {
+        receiver.fits(&self.bounds).then(|| {
             dispatch!(self.level, simd => {
                 fan::occluded(simd, self, receiver, directions, wanted, &mut decide)
             })

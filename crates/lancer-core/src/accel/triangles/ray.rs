@@ -61,7 +61,7 @@ impl NarrowRay {
         let length = ray.direction.abs().max_element();
         let scale = 1.0 / length;
         let direction = ray.direction * scale;
-        let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let size = size_of(bounds);
         let distance = ray.origin.abs().max_element();
         if !(in_range(bounds, ray.origin) && scale.is_finite() && length < 1e100) {
             return Narrowed::OutOfRange;
@@ -96,7 +96,7 @@ impl NarrowRay {
         let narrow = narrowed(origin);
         let rest = narrowed(origin - widened(narrow));
         let inverse = narrowed(safe_inverse(direction));
-        // A slab test computes b * inverse + offset: see `margin` in the tests for the sum of its errors, which is
+        // A slab test computes b * inverse + offset. The sum of its errors, derived in docs/kernels.md, is
         // below 12 units of roundoff of |b| + |origin|, each at most `size`.
         let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
         let direction = narrowed(direction);
@@ -141,9 +141,15 @@ impl NarrowRay {
     }
 }
 
+/// The largest coordinate within `bounds`, in size.
+#[inline]
+pub(super) fn size_of(bounds: &Bounds) -> f64 {
+    bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
 /// Whether kernels can work within `bounds` on rays from `origin`.
 pub(super) fn in_range(bounds: &Bounds, origin: DVec3) -> bool {
-    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let size = size_of(bounds);
     SIZES.contains(&size) && origin.abs().max_element() < size * 1e6
 }
 
@@ -162,10 +168,12 @@ fn safe_inverse(direction: DVec3) -> DVec3 {
     direction.abs().max(DVec3::splat(LEAST_COMPONENT)).copysign(direction).recip()
 }
 
-fn narrowed(v: DVec3) -> [f32; 3] {
+#[inline]
+pub(super) fn narrowed(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
-fn widened([x, y, z]: [f32; 3]) -> DVec3 {
+#[inline]
+pub(super) fn widened([x, y, z]: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(x), f64::from(y), f64::from(z))
 }

@@ -38,8 +38,7 @@ pub(super) fn intersect<S: Simd>(simd: S, tree: &TriangleTree, ray: &Ray, narrow
                 let lane = maybe.trailing_zeros() as usize;
                 let sure = verdict.sure >> lane & 1 == 1;
                 maybe &= maybe - 1;
-                // Where the determinant may vanish nothing is known of t.
-                let earliest = if sure { verdict.earliest(lane) } else { verdict.earliest_unsure(lane) };
+                let earliest = verdict.earliest(lane);
                 if sure {
                     end = end.min(verdict.latest(lane));
                 }
