@@ -63,14 +63,20 @@ pub(crate) fn seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
 
 /// Writes figures into a file of `directory`, named after the measurement and the time.
 pub(crate) fn keep(directory: &Path, name: &str, rows: &[Value]) -> Result<PathBuf, Failure> {
+    keep_fields(directory, name, json!({ "command": command_line(), "rows": rows }))
+}
+
+/// As [`keep`], with fields of the measurement's own beside the time, the machine and the version.
+pub(crate) fn keep_fields(directory: &Path, name: &str, fields: Value) -> Result<PathBuf, Failure> {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
-    let record = json!({
+    let mut record = json!({
         "unix_time": seconds,
         "machine": processor_name(),
-        "command": command_line(),
         "version": env!("CARGO_PKG_VERSION"),
-        "rows": rows,
     });
+    if let (Value::Object(record), Value::Object(fields)) = (&mut record, fields) {
+        record.extend(fields);
+    }
     std::fs::create_dir_all(directory)?;
     let path = directory.join(format!("{name}-{seconds}.json"));
     std::fs::write(&path, serde_json::to_string_pretty(&record)? + "\n")?;

@@ -14,14 +14,13 @@ mod process;
 mod scene;
 mod tachyon;
 
-use crate::Failure;
+use crate::{Failure, record};
 use process::{Outcome, Pinning};
 use scene::Picture;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// `lancer-bench peers`.
 #[derive(clap::Args)]
@@ -353,21 +352,14 @@ fn keep(
     pinning: Pinning,
     records: &[Value],
 ) -> Result<PathBuf, Failure> {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
     let about =
         |peer: &&dyn Peer| (peer.name(), json!({"version": peer.version(), "differs": peer.differs()}));
-    let record = json!({
-        "unix_time": seconds,
-        "machine": process::processor_name(),
+    let fields = json!({
         "processors": std::thread::available_parallelism()?.get(),
         "load_at_end": process::load(),
-        "version": env!("CARGO_PKG_VERSION"),
         "pinning": pinning.to_string(),
         "peers": peers.iter().map(about).collect::<std::collections::BTreeMap<_, _>>(),
         "scenes": records,
     });
-    fs::create_dir_all(directory)?;
-    let path = directory.join(format!("peers-{seconds}.json"));
-    fs::write(&path, serde_json::to_string_pretty(&record)? + "\n")?;
-    Ok(path)
+    record::keep_fields(directory, "peers", fields)
 }

@@ -93,13 +93,6 @@ fn cpu_of_children() -> f64 {
     if ticks.len() == 2 { (ticks[0] + ticks[1]) * TICK } else { f64::NAN }
 }
 
-/// The processor's name where the system tells it.
-pub(super) fn processor_name() -> String {
-    let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.to_owned())
-}
-
 /// How many programs wanted a processor in the last minute, where the system tells it.
 pub(super) fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
