@@ -147,6 +147,7 @@ fn scene_of(subject: &Subject) -> Scene {
         samples: 1,
         depth: 0,
         ao: AmbientOcclusion { samples: AO_SAMPLES, distance: 0.1 * diagonal },
+        ..Settings::default()
     };
     scene.add(Node::mesh(subject.name.clone(), Arc::clone(&subject.mesh)));
     scene

@@ -151,6 +151,7 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
             samples: flags.ao.unwrap_or(scene.ao.samples),
             distance: flags.ao_distance.unwrap_or(scene.ao.distance),
         },
+        ..scene
     }
 }
 

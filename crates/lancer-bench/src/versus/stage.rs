@@ -82,6 +82,7 @@ impl Stage {
             samples: 1,
             depth: 0,
             ao: AmbientOcclusion { samples: 0, distance: REACH * diagonal },
+            ..Settings::default()
         };
         Self { name: name.into(), scene, mesh, places, diagonal }
     }

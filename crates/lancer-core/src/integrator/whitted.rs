@@ -10,7 +10,7 @@ use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, SpawnE
 use crate::color::Rgb;
 use crate::geometry::{DVec3, Ray};
 use crate::sampling::{Branch, Key};
-use crate::scene::{Material, Settings};
+use crate::scene::{Light, Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
 use crate::world::{Hit, Intersection, Media, Touching, World};
 use std::collections::VecDeque;
@@ -20,6 +20,9 @@ use std::collections::VecDeque;
 pub struct Whitted<'w> {
     world: &'w World,
     depth: u32,
+    shadows: bool,
+    reflection: bool,
+    refraction: bool,
     occlusion: AmbientOcclusionSampler,
 }
 
@@ -51,9 +54,11 @@ impl<'w> Whitted<'w> {
     /// level, are cut by [`LEAST_THROUGHPUT`] long before, unless their coefficients keep all light.
     pub const MAX_RAYS: u32 = 1 << 16;
 
-    /// An integrator for a world; of the settings, `depth` and `ao` count.
+    /// An integrator for a world; of the settings, all count that are not the image's size and subpixels.
     pub fn new(world: &'w World, settings: &Settings) -> Self {
-        Self { world, depth: settings.depth, occlusion: AmbientOcclusionSampler::new(&settings.ao) }
+        let &Settings { depth, shadows, reflection, refraction, ref ao, .. } = settings;
+        let occlusion = AmbientOcclusionSampler::new(ao);
+        Self { world, depth, shadows, reflection, refraction, occlusion }
     }
 
     /// The radiance that arrives along a camera ray.
@@ -181,8 +186,7 @@ impl<L: Listener> Walk<'_, '_, L> {
         let mut radiance = Rgb::BLACK;
         for (index, light) in world.lights().iter().enumerate() {
             let Some(term) = LightTerm::new(&arrival.point, light) else { continue };
-            self.counts.shadow += 1;
-            let visible = !world.occluded(&arrival.at.segment_to(light.position));
+            let visible = !self.integrator.shadows || self.reaches(&arrival.at, light);
             self.listener.light(index, light, &term, visible);
             if visible {
                 radiance += term.radiance();
@@ -191,20 +195,28 @@ impl<L: Listener> Walk<'_, '_, L> {
         radiance
     }
 
-    /// Queues L_r and L_t where their coefficients are not zero.
+    /// Whether nothing stands between a surface and a light.
+    fn reaches(&mut self, at: &Intersection, light: &Light) -> bool {
+        self.counts.shadow += 1;
+        !self.integrator.world.occluded(&at.segment_to(light.position))
+    }
+
+    /// Queues L_r and L_t where they are wanted and their coefficients are not zero.
     fn continue_paths(&mut self, arrival: &Arrival) {
         let material = arrival.point.material;
-        if material.transmit.is_black() && material.reflect.is_black() {
+        let wants_reflection = self.integrator.reflection && !material.reflect.is_black();
+        let wants_refraction = self.integrator.refraction && !material.transmit.is_black();
+        if !wants_reflection && !wants_refraction {
             return;
         }
         let bend = Bend::new(self.integrator.world, arrival);
         let (reflect, transmit) = bend.weights(material);
         let mirrored = mirror_direction(&arrival.at, arrival.pending.ray.direction);
-        if !reflect.is_black() {
+        if wants_reflection && !reflect.is_black() {
             let media = arrival.pending.media.clone();
             self.spawn(arrival, &bend, Branch::Reflection, RayKind::Reflection, reflect, mirrored, media);
         }
-        if !transmit.is_black() {
+        if wants_refraction && !transmit.is_black() {
             let (kind, direction, media) = match bend.refracted {
                 Some(direction) => (RayKind::Refraction, direction, bend.media_after.clone()),
                 None => (RayKind::TotalInternalReflection, mirrored, arrival.pending.media.clone()),

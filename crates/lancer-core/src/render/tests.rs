@@ -24,6 +24,7 @@ fn scene() -> Scene {
         samples: 2,
         depth: 4,
         ao: AmbientOcclusion { samples: 8, distance: 1.5 },
+        ..Settings::default()
     };
     let glass = scene.add_material(Material {
         diffuse: Rgb::grey(0.1),

@@ -16,6 +16,7 @@ pub use texture::{ImageError, ImageTexture, Texture};
 
 use crate::camera::Camera;
 use crate::color::Rgb;
+use crate::film::Tone;
 use crate::geometry::DVec3;
 
 /// A point light.
@@ -65,6 +66,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// What to render, unless told otherwise.
     pub settings: Settings,
+    /// How radiance is shown, unless told otherwise.
+    pub tone: Tone,
     materials: Vec<Material>,
     nodes: Vec<Node>,
     roots: Vec<NodeId>,

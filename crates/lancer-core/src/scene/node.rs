@@ -47,6 +47,8 @@ pub struct Node {
     pub shape: Option<Shape>,
     /// What is drawn below, in this node's space.
     pub children: Vec<NodeId>,
+    /// Whether neither its shape nor anything below is drawn.
+    pub hidden: bool,
 }
 
 impl Node {

@@ -28,11 +28,26 @@ pub struct Settings {
     pub depth: u32,
     /// Ambient occlusion.
     pub ao: AmbientOcclusion,
+    /// Whether what stands before a light hides it; without, v_i is 1.
+    pub shadows: bool,
+    /// Whether L_r is traced; without, it is 0.
+    pub reflection: bool,
+    /// Whether L_t is traced; without, it is 0.
+    pub refraction: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { width: 800, height: 600, samples: 1, depth: 5, ao: AmbientOcclusion::default() }
+        Self {
+            width: 800,
+            height: 600,
+            samples: 1,
+            depth: 5,
+            ao: AmbientOcclusion::default(),
+            shadows: true,
+            reflection: true,
+            refraction: true,
+        }
     }
 }
 

@@ -179,7 +179,7 @@ impl Primitives for ObjectBoxes {
     }
 }
 
-/// How many shapes each node draws, itself included. Finds cycles and dangling references on the way.
+/// How many shapes each node draws, itself included; none where it is hidden. Finds cycles and dangling references on the way.
 ///
 /// Trees may be any number of levels deep, so the walk keeps its own stack.
 fn count_drawn(scene: &Scene) -> Result<Vec<u64>, CompileError> {
@@ -215,8 +215,9 @@ fn count_drawn(scene: &Scene) -> Result<Vec<u64>, CompileError> {
             State::Open => {
                 state[index] = State::Done;
                 let own = u64::from(node.shape.is_some());
-                drawn[index] =
+                let all =
                     node.children.iter().fold(own, |sum, child| sum.saturating_add(drawn[child.index()]));
+                drawn[index] = if node.hidden { 0 } else { all };
                 stack.pop();
             }
             State::Done => {

@@ -61,6 +61,7 @@ fn expected() -> Scene {
         samples: 2,
         depth: 5,
         ao: AmbientOcclusion { samples: 64, distance: 1.0 },
+        ..Settings::default()
     };
     let glass = scene.add_material(Material {
         ambient: Rgb::grey(0.1),

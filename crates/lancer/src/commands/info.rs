@@ -129,7 +129,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 fn picture(settings: &Settings) -> String {
-    let Settings { width, height, samples, depth, ao } = settings;
+    let Settings { width, height, samples, depth, ao, .. } = settings;
     let occlusion = match ao.samples {
         0 => "off".into(),
         samples => format!("{samples} to {}", short(ao.distance)),
@@ -223,7 +223,7 @@ struct OcclusionJson {
 
 impl From<Settings> for PictureJson {
     fn from(settings: Settings) -> Self {
-        let Settings { width, height, samples, depth, ao } = settings;
+        let Settings { width, height, samples, depth, ao, .. } = settings;
         let ao = OcclusionJson { samples: ao.samples, distance: ao.distance };
         Self { width, height, samples, depth, ao }
     }

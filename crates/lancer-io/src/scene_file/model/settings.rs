@@ -127,6 +127,7 @@ impl TryFrom<RenderFields> for RenderFile {
             samples: fields.samples.get(),
             depth: fields.depth.get(),
             ao: AmbientOcclusion { samples: fields.ao.samples.get(), distance: fields.ao.distance.get() },
+            ..Settings::default()
         };
         settings.validate().map(|()| Self(settings))
     }
