@@ -5,6 +5,10 @@
 //!
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
+mod app;
+mod language;
 mod source;
 
+pub use app::{Action, Selection};
+pub use language::{Language, Phrase};
 pub use source::Source;
