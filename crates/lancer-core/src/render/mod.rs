@@ -8,7 +8,8 @@ mod driver;
 #[cfg(test)]
 mod tests;
 
-pub use control::{CancelToken, Control, Tile};
+pub use crate::cancel::CancelToken;
+pub use control::{Control, Tile};
 pub use driver::{Region, Render, RenderError, render};
 
 /// Runs `work`, and all that it does in parallel, on a number of threads of its own; 0 for one a core.
