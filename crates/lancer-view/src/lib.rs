@@ -6,9 +6,15 @@
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
+mod document;
 mod language;
+mod preferences;
 mod source;
 
 pub use app::{Action, Selection};
+pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
+pub use preferences::{
+    Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
+};
 pub use source::Source;

@@ -1,6 +1,6 @@
 //! What a user may want.
 
-use crate::Source;
+use crate::{Edit, Source};
 use lancer_core::scene::{MaterialId, NodeId};
 
 /// What is selected in the scene.
@@ -26,4 +26,8 @@ pub enum Action {
     Select(Selection),
     /// Move the view so that this fills it.
     Frame(Selection),
+    /// Change the scene.
+    Edit(Edit),
+    /// What was done with one control is done: the next edit is a step of its own in the history.
+    EndGesture,
 }
