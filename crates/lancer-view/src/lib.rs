@@ -7,6 +7,8 @@
 
 mod app;
 mod language;
+pub mod navigation;
+pub mod overlay;
 mod source;
 
 pub use app::{Action, Selection};
