@@ -1,14 +1,16 @@
 //! The window of Lancer: choose a scene, move in it, set what the picture is to be, render.
 //!
 //! The viewport shows what the renderer makes and nothing else: there is no second shading model. What can be
-//! said without a window is plain code, tested as such; only the application knows egui.
+//! said without a window is plain code, tested as such; only the application and its panels know egui.
 //!
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
-mod document;
+pub mod document;
 mod language;
-mod preferences;
+pub mod navigation;
+pub mod overlay;
+pub mod preferences;
 mod source;
 
 pub use app::{Action, Selection};
