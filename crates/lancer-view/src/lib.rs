@@ -6,9 +6,11 @@
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
+mod commands;
 mod language;
 mod source;
 
 pub use app::{Action, Selection};
+pub use commands::{Command, CommandContext};
 pub use language::{Language, Phrase};
 pub use source::Source;
