@@ -7,10 +7,16 @@
 
 mod app;
 mod commands;
+mod document;
 mod language;
+mod preferences;
 mod source;
 
 pub use app::{Action, Selection};
 pub use commands::{Command, CommandContext};
+pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
+pub use preferences::{
+    Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
+};
 pub use source::Source;

@@ -1,6 +1,6 @@
 //! What a user may want.
 
-use crate::{Command, Source};
+use crate::{Command, Edit, Source};
 use lancer_core::scene::{MaterialId, NodeId};
 use lancer_core::world::CompileOptions;
 use std::path::PathBuf;
@@ -42,4 +42,8 @@ pub enum Action {
     SavePicture(PathBuf),
     /// Write the whole scene.
     SaveScene(PathBuf),
+    /// Change the scene.
+    Edit(Edit),
+    /// What was done with one control is done: the next edit is a step of its own in the history.
+    EndGesture,
 }
