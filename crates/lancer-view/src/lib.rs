@@ -6,6 +6,7 @@
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
+pub mod commands;
 pub mod document;
 mod language;
 pub mod navigation;
@@ -14,6 +15,7 @@ pub mod preferences;
 mod source;
 
 pub use app::{Action, Selection};
+pub use commands::{Command, CommandContext};
 pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
 pub use preferences::{
