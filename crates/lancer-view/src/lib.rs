@@ -9,6 +9,7 @@ mod app;
 mod commands;
 mod document;
 mod language;
+mod panels;
 mod preferences;
 mod source;
 
