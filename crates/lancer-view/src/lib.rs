@@ -11,6 +11,7 @@ pub mod document;
 mod language;
 pub mod navigation;
 pub mod overlay;
+pub mod panels;
 pub mod preferences;
 mod source;
 

@@ -98,6 +98,8 @@ pub struct CommandContext {
     pub has_hidden: bool,
     /// A picture is being rendered, or a scene opened.
     pub is_working: bool,
+    /// A picture is being rendered.
+    pub is_rendering: bool,
     /// Renders that are kept.
     pub renders: usize,
     /// A render is shown in place of the view.

@@ -17,6 +17,7 @@ fn everything() -> CommandContext {
         can_hide: true,
         has_hidden: true,
         is_working: true,
+        is_rendering: true,
         renders: 2,
         shows_render: true,
         checked: Vec::new(),
