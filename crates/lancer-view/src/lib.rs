@@ -8,7 +8,12 @@
 mod app;
 mod language;
 mod source;
+mod worker;
 
 pub use app::{Action, Selection};
 pub use language::{Language, Phrase};
 pub use source::Source;
+pub use worker::{
+    Channel, Event, Frame, OpenStage, Opened, Progress, RenderFault, RenderId, RenderRequest, Rendered,
+    ViewRequest, Worker,
+};
