@@ -14,6 +14,7 @@ pub mod overlay;
 pub mod panels;
 pub mod preferences;
 mod source;
+mod worker;
 
 pub use app::{Action, Selection};
 pub use commands::{Command, CommandContext};
@@ -23,3 +24,7 @@ pub use preferences::{
     Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
 };
 pub use source::Source;
+pub use worker::{
+    Channel, Event, Frame, OpenStage, Opened, Progress, RenderFault, RenderId, RenderRequest, Rendered,
+    ViewRequest, Worker,
+};
