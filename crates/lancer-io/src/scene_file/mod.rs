@@ -12,19 +12,23 @@
 mod apply;
 mod assets;
 mod build;
+mod changes;
 mod deserialize;
 mod export;
 mod model;
 mod origins;
 mod overrides;
+mod patch;
 mod report;
 mod schema;
 mod syntax;
 
 pub use apply::apply_overrides;
 pub use assets::{Assets, Model};
+pub use changes::{Changes, Unsaved, changes};
 pub use origins::Origins;
 pub use overrides::{Override, OverrideError};
+pub use patch::patch;
 pub use schema::json_schema;
 
 use crate::Loaded;

@@ -12,7 +12,8 @@ use std::collections::HashMap;
 /// shares with others. A scene that comes from no scene file has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origins {
-    objects: HashMap<NodeId, Position>,
+    /// By the node's index.
+    objects: HashMap<usize, Position>,
     /// By index; those beyond its end have none.
     materials: Vec<Option<MaterialOrigin>>,
 }
@@ -20,7 +21,8 @@ pub struct Origins {
 /// The place of an object among `objects`, or among the `children` of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Position {
-    parent: Option<NodeId>,
+    /// By its index.
+    parent: Option<usize>,
     index: u32,
 }
 
@@ -29,8 +31,8 @@ struct Position {
 enum MaterialOrigin {
     /// Under `materials`, by this name.
     Named(String),
-    /// In an object.
-    InPlace(NodeId),
+    /// In the object of the node of that index.
+    InPlace(usize),
 }
 
 impl Origins {
@@ -46,32 +48,32 @@ impl Origins {
     /// Recurses as deep as objects are nested in the file.
     fn add_objects(
         &mut self,
-        parent: Option<NodeId>,
+        parent: Option<usize>,
         objects: &[Spanned<NodeFile>],
         nodes: &[NodeId],
         scene: &Scene,
     ) {
         for (index, (object, &id)) in (0..).zip(objects.iter().zip(nodes)) {
-            self.objects.insert(id, Position { parent, index });
+            self.objects.insert(id.index(), Position { parent, index });
             let node = scene.node(id);
             let is_in_place = |material: &Spanned<_>| matches!(material.value, MaterialReference::InPlace(_));
             if let Some(material) = node.material
                 && object.value.material.as_ref().is_some_and(is_in_place)
             {
-                self.materials[material.index()] = Some(MaterialOrigin::InPlace(id));
+                self.materials[material.index()] = Some(MaterialOrigin::InPlace(id.index()));
             }
             // The node of a model or an asset comes first.
             if let Some(children) = &object.value.children
                 && let Some(first) = node.children.len().checked_sub(children.len())
             {
-                self.add_objects(Some(id), children, &node.children[first..], scene);
+                self.add_objects(Some(id.index()), children, &node.children[first..], scene);
             }
         }
     }
 
     /// Whether the file holds the object of this node.
     pub fn holds_node(&self, id: NodeId) -> bool {
-        self.objects.contains_key(&id)
+        self.objects.contains_key(&id.index())
     }
 
     /// Whether the file holds this material.
@@ -79,12 +81,12 @@ impl Origins {
         self.material(id.index()).is_some()
     }
 
-    /// The path of an object.
-    pub(super) fn node_path(&self, id: NodeId) -> Option<Vec<String>> {
+    /// The path of the object of the node of this index.
+    pub(super) fn node_path(&self, node: usize) -> Option<Vec<String>> {
         let mut path = Vec::new();
-        let mut next = Some(id);
-        while let Some(id) = next {
-            let Position { parent, index } = *self.objects.get(&id)?;
+        let mut next = Some(node);
+        while let Some(node) = next {
+            let Position { parent, index } = *self.objects.get(&node)?;
             path.push(index.to_string());
             path.push(if parent.is_some() { "children" } else { "objects" }.to_owned());
             next = parent;

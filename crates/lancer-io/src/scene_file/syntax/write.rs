@@ -22,7 +22,7 @@ pub(crate) fn flow(node: &Node, language: Language) -> String {
 }
 
 /// A key as it stands before its colon.
-pub(crate) fn key(key: &str, language: Language) -> String {
+pub(crate) fn flow_key(key: &str, language: Language) -> String {
     let mut out = String::new();
     write_text(key, language, &mut out);
     out
