@@ -10,6 +10,7 @@ mod document;
 mod language;
 mod preferences;
 mod source;
+mod watch;
 
 pub use app::{Action, Selection};
 pub use document::{Document, Edit, EditKind};
@@ -18,3 +19,4 @@ pub use preferences::{
     Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
 };
 pub use source::Source;
+pub use watch::{Watch, WatchError};
