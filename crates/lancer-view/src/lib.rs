@@ -6,13 +6,16 @@
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
+mod commands;
 mod document;
 mod language;
+mod panels;
 mod preferences;
 mod source;
 mod watch;
 
 pub use app::{Action, Selection};
+pub use commands::{Command, CommandContext};
 pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
 pub use preferences::{
