@@ -12,6 +12,7 @@ mod language;
 mod panels;
 mod preferences;
 mod source;
+mod theme;
 
 pub use app::{Action, Selection};
 pub use commands::{Command, CommandContext};
