@@ -9,6 +9,8 @@ mod app;
 mod commands;
 mod document;
 mod language;
+pub mod navigation;
+pub mod overlay;
 mod panels;
 mod preferences;
 mod source;
