@@ -15,6 +15,7 @@ mod panels;
 mod preferences;
 mod source;
 mod theme;
+mod watch;
 
 pub use app::{Action, Selection};
 pub use commands::{Command, CommandContext};
@@ -24,3 +25,4 @@ pub use preferences::{
     Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
 };
 pub use source::Source;
+pub use watch::{Watch, WatchError};

@@ -4,6 +4,8 @@
 //! version has added, has its default; a file that makes no sense is kept beside and started anew, with a warning.
 //! It knows neither windows nor scenes.
 
+use crate::navigation::Scheme;
+use crate::overlay::OverlayOptions;
 use crate::{Language, Phrase};
 use lancer_core::accel::Accelerator;
 use lancer_io::output::{WriteError, write_atomically};
@@ -20,12 +22,16 @@ pub struct Preferences {
     pub theme: Theme,
     /// The window's language; none follows the system.
     pub language: Option<Language>,
+    /// What the mouse does.
+    pub scheme: Scheme,
     /// The files that were opened last.
     pub recent: RecentFiles,
     /// Where the window was; none before the first run.
     pub window: Option<WindowPlace>,
     /// Which panels are shown.
     pub panels: Panels,
+    /// What is drawn over the picture.
+    pub overlay: OverlayOptions,
     /// How many threads render; 0 is one a core.
     pub threads: usize,
     /// What finds hits.
@@ -287,9 +293,11 @@ mod tests {
         Preferences {
             theme: Theme::Dark,
             language: Some(Language::French),
+            scheme: Scheme::Trackpad,
             recent,
             window: Some(WindowPlace { position: Some([3.0, -4.5]), size: [1280.0, 800.0], maximized: true }),
             panels: Panels { tree: false, ..Panels::default() },
+            overlay: OverlayOptions { grid: true, tree_level: Some(4), ..OverlayOptions::default() },
             threads: 3,
             accelerator: Accelerator::KdTree,
         }

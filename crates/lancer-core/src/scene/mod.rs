@@ -118,6 +118,11 @@ impl Scene {
         &self.materials
     }
 
+    /// The ids of the materials, in their order.
+    pub fn material_ids(&self) -> impl ExactSizeIterator<Item = MaterialId> + use<> {
+        (0..self.materials.len()).map(MaterialId::from_index)
+    }
+
     /// The materials, to edit in place.
     pub fn materials_mut(&mut self) -> &mut [Material] {
         &mut self.materials

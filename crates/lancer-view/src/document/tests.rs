@@ -1,4 +1,5 @@
 use super::*;
+use crate::Language;
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
