@@ -14,6 +14,7 @@ pub mod overlay;
 pub mod panels;
 pub mod preferences;
 mod source;
+pub mod theme;
 pub mod watch;
 pub mod worker;
 

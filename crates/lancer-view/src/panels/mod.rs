@@ -4,5 +4,9 @@
 //! nothing itself but its own state, as what is typed or unfolded.
 
 mod fields;
+pub mod file_picker;
+pub mod menu_bar;
+pub mod messages;
+pub mod palette;
 mod scenes;
 pub mod settings;
