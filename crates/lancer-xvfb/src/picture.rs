@@ -59,11 +59,15 @@ impl Picture {
 
     /// Which part of the pixels differs, 0 to 1; all of them where the sizes do.
     pub fn difference(&self, other: &Self) -> f64 {
-        if (self.width, self.height) != (other.width, other.height) {
-            return 1.0;
+        self.different_pixels(other) as f64 / self.pixels.len() as f64
+    }
+
+    /// How many pixels differ; all of them where the sizes do.
+    pub(crate) fn different_pixels(&self, other: &Self) -> usize {
+        match (self.width, self.height) == (other.width, other.height) {
+            true => self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count(),
+            false => self.pixels.len(),
         }
-        let different = self.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b).count();
-        different as f64 / self.pixels.len() as f64
     }
 
     /// A part of it.
