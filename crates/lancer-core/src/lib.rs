@@ -31,6 +31,7 @@
 
 pub mod accel;
 pub mod camera;
+pub mod cancel;
 pub mod color;
 pub mod film;
 pub mod geometry;

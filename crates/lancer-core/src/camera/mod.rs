@@ -50,6 +50,8 @@ pub struct Projection {
     right: DVec3,
     /// One pixel down on that plane.
     down: DVec3,
+    /// The direction of view, of length 1.
+    forward: DVec3,
 }
 
 impl Camera {
@@ -88,6 +90,7 @@ impl Camera {
             top_left: up * (0.5 * height * pixel) - right * (0.5 * width * pixel) - backward,
             right: right * pixel,
             down: up * -pixel,
+            forward: -backward,
         })
     }
 }
@@ -100,6 +103,20 @@ impl Projection {
     /// The ray through the point (`x`, `y`) of the image, in pixels from its top left corner; unit direction.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         Ray::new(self.eye, (self.top_left + self.right * x + self.down * y).normalize())
+    }
+
+    /// Where a point of the world is in the image: x and y in pixels from its top left corner, and its depth along
+    /// the direction of view, in world units. None where the point is not before the eye.
+    ///
+    /// [`Projection::ray`] through (x, y) meets the point.
+    pub fn pixel_of(&self, point_in_world: DVec3) -> Option<(f64, f64, f64)> {
+        let to_point = point_in_world - self.eye;
+        let depth = to_point.dot(self.forward);
+        (depth > 0.0).then(|| {
+            let in_plane = to_point / depth - self.top_left;
+            let along = |pixel: DVec3| in_plane.dot(pixel) / pixel.length_squared();
+            (along(self.right), along(self.down), depth)
+        })
     }
 }
 

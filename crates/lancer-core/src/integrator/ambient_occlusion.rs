@@ -4,6 +4,7 @@
 //! is 1. Half of the directions have no weight and are not traced.
 
 use super::RayCounts;
+use crate::cancel::CancelToken;
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
 use crate::world::{Intersection, World};
@@ -13,12 +14,20 @@ use crate::world::{Intersection, World};
 pub struct AmbientOcclusionSampler {
     lattice: HemisphereLattice,
     distance: f64,
+    cancel: CancelToken,
 }
 
 impl AmbientOcclusionSampler {
     /// A sampler for N and D.
     pub fn new(settings: &AmbientOcclusion) -> Self {
-        Self { lattice: HemisphereLattice::new(settings.samples), distance: settings.distance }
+        let lattice = HemisphereLattice::new(settings.samples);
+        Self { lattice, distance: settings.distance, cancel: CancelToken::default() }
+    }
+
+    /// The same, until it is cancelled: what it returns after that is unfinished.
+    #[must_use]
+    pub fn until(self, cancel: &CancelToken) -> Self {
+        Self { cancel: cancel.clone(), ..self }
     }
 
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
@@ -28,6 +37,9 @@ impl AmbientOcclusionSampler {
         }
         let mut sum = 0.0;
         for fan in self.lattice.around(at.facing_normal(), &mut key.stream()) {
+            if self.cancel.is_cancelled() {
+                break;
+            }
             counts.ao += fan.count as u64;
             let mut visible = fan.all() & !world.occluded_fan(at, &fan, self.distance);
             while visible != 0 {

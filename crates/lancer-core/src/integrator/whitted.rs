@@ -7,12 +7,13 @@
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
 use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, SpawnEvent};
+use crate::cancel::CancelToken;
 use crate::color::Rgb;
 use crate::geometry::{DVec3, Ray};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Light, Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Hit, Intersection, Media, Touching, World};
+use crate::world::{Intersection, Media, Touching, World};
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -24,6 +25,7 @@ pub struct Whitted<'w> {
     reflection: bool,
     refraction: bool,
     occlusion: AmbientOcclusionSampler,
+    cancel: CancelToken,
 }
 
 /// Memory that one camera ray leaves to the next.
@@ -58,7 +60,16 @@ impl<'w> Whitted<'w> {
     pub fn new(world: &'w World, settings: &Settings) -> Self {
         let &Settings { depth, shadows, reflection, refraction, ref ao, .. } = settings;
         let occlusion = AmbientOcclusionSampler::new(ao);
-        Self { world, depth, shadows, reflection, refraction, occlusion }
+        Self { world, depth, shadows, reflection, refraction, occlusion, cancel: CancelToken::default() }
+    }
+
+    /// The same, until it is cancelled: what it returns after that is unfinished, but comes soon, even from the
+    /// midst of a large tree of reflections.
+    #[must_use]
+    pub fn until(mut self, cancel: &CancelToken) -> Self {
+        self.occlusion = self.occlusion.until(cancel);
+        self.cancel = cancel.clone();
+        self
     }
 
     /// The radiance that arrives along a camera ray.
@@ -92,6 +103,17 @@ impl<'w> Whitted<'w> {
             Rgb::BLACK
         }
     }
+
+    /// c_a at the surface that a camera ray meets; 1 where it meets none.
+    ///
+    /// With the key of [`Whitted::radiance`] it is the factor of the ambient term that is found there.
+    pub fn occlusion(&self, ray: &Ray, key: Key, counts: &mut RayCounts) -> f64 {
+        counts.primary += 1;
+        self.world.intersect(ray).map_or(1.0, |hit| {
+            let (at, _) = self.world.seen_surface(ray, &hit);
+            self.occlusion.factor(self.world, &at, key, counts)
+        })
+    }
 }
 
 /// One camera ray's tree on its way.
@@ -120,6 +142,9 @@ impl<L: Listener> Walk<'_, '_, L> {
         let mut id = 0;
         let mut next = Some(first);
         while let Some(pending) = next {
+            if self.integrator.cancel.is_cancelled() {
+                break;
+            }
             self.count(pending.kind);
             self.listener.begin_ray(RayId(id), pending.kind, pending.throughput, &pending.ray);
             radiance += self.trace(RayId(id), &pending) * pending.throughput;
@@ -144,7 +169,7 @@ impl<L: Listener> Walk<'_, '_, L> {
             self.listener.background(world.background());
             return world.background();
         };
-        let (at, touching) = seen_surface(world, &pending.ray, &hit);
+        let (at, touching) = world.seen_surface(&pending.ray, &hit);
         let material = world.material(at.material);
         let point = ShadingPoint {
             position: at.point,
@@ -265,22 +290,6 @@ impl<L: Listener> Walk<'_, '_, L> {
             key: arrival.pending.key.child(branch),
             media,
         });
-    }
-}
-
-/// The surface that counts at a hit, and the dielectrics that touch it there. An opaque surface that touches a
-/// transparent one, as where glass stands on a table, is what is seen.
-fn seen_surface(world: &World, ray: &Ray, hit: &Hit) -> (Intersection, Vec<Touching>) {
-    let at = world.intersection(ray, hit);
-    if world.material(at.material).transmit.is_black() {
-        return (at, Vec::new());
-    }
-    let touching = world.touching(&at, ray.direction);
-    match touching.iter().find(|other| !other.is_transmissive) {
-        Some(&Touching { object, primitive, .. }) => {
-            (world.intersection(ray, &Hit { t: hit.t, object, primitive }), Vec::new())
-        }
-        None => (at, touching),
     }
 }
 

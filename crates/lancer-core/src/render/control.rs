@@ -1,23 +1,7 @@
 //! How a render is watched and stopped.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Asks a render to stop; shared between who asks and who renders.
-#[derive(Clone, Debug, Default)]
-pub struct CancelToken(Arc<AtomicBool>);
-
-impl CancelToken {
-    /// Asks for the end. It cannot be taken back.
-    pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the end was asked for.
-    pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
+use crate::cancel::CancelToken;
+use crate::integrator::RayCounts;
 
 /// A finished part of the image.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,10 +20,10 @@ pub struct Tile {
 
 /// Who watches a render.
 pub struct Control<'a> {
-    /// Stops it; looked at before every subpixel.
+    /// Stops it; looked at before every ray.
     pub cancel: CancelToken,
     /// Called with each tile when it is done, from any thread, and with the rays that it took.
-    pub on_tile: &'a (dyn Fn(&Tile, &crate::integrator::RayCounts) + Sync),
+    pub on_tile: &'a (dyn Fn(&Tile, &RayCounts) + Sync),
     /// The side of a tile in pixels, at least 1. It changes nothing in the image.
     pub tile_size: u32,
 }

@@ -4,6 +4,7 @@ use super::{Control, Tile};
 use crate::camera::{Camera, CameraError, Projection};
 use crate::color::Rgb;
 use crate::film::Image;
+use crate::geometry::Ray;
 use crate::integrator::{RayCounts, Scratch, Silent, Whitted};
 use crate::sampling::{Key, subpixel_centers};
 use crate::scene::{Settings, SettingsError};
@@ -94,39 +95,77 @@ pub fn render(
     region: Option<Region>,
     control: &Control,
 ) -> Result<Render, RenderError> {
-    settings.validate()?;
-    let (width, height) = (settings.width, settings.height);
-    let region = region.unwrap_or(Region { x: 0, y: 0, width, height });
-    if !region.fits(width, height) {
-        return Err(RenderError::Region { region, width, height });
+    let frame = Frame::new(camera, settings, region)?;
+    let integrator = Whitted::new(world, settings).until(&control.cancel);
+    let media = Media::around(world, camera.eye);
+    frame.render(control, |ray, key, scratch, counts| {
+        integrator.radiance(ray, &media, key, scratch, counts, &mut Silent)
+    })
+}
+
+/// Renders c_a alone, as grey: how open to the ambient light the surface is that each camera ray meets; 1 where it
+/// meets none. Otherwise as [`render`]: the rays, their random numbers and the subpixels are the same.
+///
+/// # Errors
+/// See [`RenderError`].
+pub fn render_occlusion(
+    world: &World,
+    camera: &Camera,
+    settings: &Settings,
+    region: Option<Region>,
+    control: &Control,
+) -> Result<Render, RenderError> {
+    let frame = Frame::new(camera, settings, region)?;
+    let integrator = Whitted::new(world, settings).until(&control.cancel);
+    frame.render(control, |ray, key, _, counts| Rgb::grey(integrator.occlusion(&ray, key, counts)))
+}
+
+/// What is to be rendered: checked, before anything is allocated.
+struct Frame {
+    projection: Projection,
+    /// Subpixels along a pixel's side.
+    samples: u32,
+    region: Region,
+}
+
+impl Frame {
+    fn new(camera: &Camera, settings: &Settings, region: Option<Region>) -> Result<Self, RenderError> {
+        settings.validate()?;
+        let &Settings { width, height, samples, .. } = settings;
+        let region = region.unwrap_or(Region { x: 0, y: 0, width, height });
+        if !region.fits(width, height) {
+            return Err(RenderError::Region { region, width, height });
+        }
+        Ok(Self { projection: camera.project(width, height)?, samples, region })
     }
-    let job = Job {
-        integrator: Whitted::new(world, settings),
-        projection: camera.project(width, height)?,
-        media: Media::around(world, camera.eye),
-        samples: settings.samples,
-        region,
-        control,
-        film: Mutex::new(Image::black(region.width, region.height)),
-        panic: OnceLock::new(),
-    };
-    // Counts are whole numbers, so their sum does not depend on the order of work.
-    let rays = tiles_of(&region, control.tile_size.max(1))
-        .into_par_iter()
-        .map(|area| job.tile(area))
-        .try_reduce(RayCounts::default, |mut a, b| {
-            a += b;
-            Some(a)
-        });
-    match (rays, job.panic.into_inner()) {
-        (_, Some(panic)) => Err(panic),
-        (None, None) => Err(RenderError::Cancelled),
-        // A poisoned film would mean a panic while a tile was put into it, and there is none.
-        (Some(rays), None) => {
-            Ok(Render { image: job.film.into_inner().unwrap_or_else(PoisonError::into_inner), rays })
+
+    /// Renders what `trace` finds for each camera ray.
+    fn render(self, control: &Control, trace: impl Trace) -> Result<Render, RenderError> {
+        let film = Mutex::new(Image::black(self.region.width, self.region.height));
+        let job = Job { frame: self, trace, control, film, panic: OnceLock::new() };
+        // Counts are whole numbers, so their sum does not depend on the order of work.
+        let rays = tiles_of(&job.frame.region, control.tile_size.max(1))
+            .into_par_iter()
+            .map(|area| job.tile(area))
+            .try_reduce(RayCounts::default, |mut a, b| {
+                a += b;
+                Some(a)
+            });
+        match (rays, job.panic.into_inner()) {
+            (_, Some(panic)) => Err(panic),
+            (None, None) => Err(RenderError::Cancelled),
+            // A poisoned film would mean a panic while a tile was put into it, and there is none.
+            (Some(rays), None) => {
+                Ok(Render { image: job.film.into_inner().unwrap_or_else(PoisonError::into_inner), rays })
+            }
         }
     }
 }
+
+/// What a camera ray yields; something unfinished once the render is cancelled.
+trait Trace: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync {}
+
+impl<T: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync> Trace for T {}
 
 /// The tiles of a region in reading order, in coordinates of the region.
 fn tiles_of(region: &Region, size: u32) -> Vec<Region> {
@@ -138,19 +177,16 @@ fn tiles_of(region: &Region, size: u32) -> Vec<Region> {
         .collect()
 }
 
-struct Job<'a> {
-    integrator: Whitted<'a>,
-    projection: Projection,
-    media: Media,
-    samples: u32,
-    region: Region,
+struct Job<'a, T> {
+    frame: Frame,
+    trace: T,
     control: &'a Control<'a>,
     film: Mutex<Image>,
     /// The first panic; it stops all threads.
     panic: OnceLock<RenderError>,
 }
 
-impl Job<'_> {
+impl<T: Trace> Job<'_, T> {
     /// Traces a tile into the film. Returns the rays that it took; none where the render was cancelled or a
     /// thread panicked.
     fn tile(&self, area: Region) -> Option<RayCounts> {
@@ -159,7 +195,7 @@ impl Job<'_> {
         let mut pixels = Vec::with_capacity(area.width as usize * area.height as usize);
         for y in area.y..area.y + area.height {
             for x in area.x..area.x + area.width {
-                let (x, y) = (x + self.region.x, y + self.region.y);
+                let (x, y) = (x + self.frame.region.x, y + self.frame.region.y);
                 // After a panic the scratch and the counts are dropped with the tile.
                 let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut scratch, &mut counts)));
                 match pixel {
@@ -183,16 +219,17 @@ impl Job<'_> {
 
     /// The mean of the pixel's subpixels; none where the render is to stop.
     fn pixel(&self, x: u32, y: u32, scratch: &mut Scratch, counts: &mut RayCounts) -> Option<[f32; 3]> {
+        let Frame { projection, samples, .. } = &self.frame;
         let mut sum = Rgb::BLACK;
-        for (subpixel, (dx, dy)) in subpixel_centers(self.samples).enumerate() {
+        for (subpixel, (dx, dy)) in subpixel_centers(*samples).enumerate() {
+            let ray = projection.ray(f64::from(x) + dx, f64::from(y) + dy);
+            sum += (self.trace)(ray, Key::camera(x, y, subpixel as u32), scratch, counts);
+            // Afterwards: what was cancelled on its way is unfinished.
             if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
                 return None;
             }
-            let ray = self.projection.ray(f64::from(x) + dx, f64::from(y) + dy);
-            let key = Key::camera(x, y, subpixel as u32);
-            sum += self.integrator.radiance(ray, &self.media, key, scratch, counts, &mut Silent);
         }
-        let mean = sum * (1.0 / f64::from(self.samples * self.samples));
+        let mean = sum * (1.0 / f64::from(samples * samples));
         Some(mean.to_array().map(|channel| channel as f32))
     }
 }

@@ -5,11 +5,14 @@
 
 mod control;
 mod driver;
+mod features;
 #[cfg(test)]
 mod tests;
 
-pub use control::{CancelToken, Control, Tile};
-pub use driver::{Region, Render, RenderError, render};
+pub use crate::cancel::CancelToken;
+pub use control::{Control, Tile};
+pub use driver::{Region, Render, RenderError, render, render_occlusion};
+pub use features::{Feature, Features, feature_at, render_features};
 
 /// Runs `work`, and all that it does in parallel, on a number of threads of its own; 0 for one a core.
 ///

@@ -4,6 +4,7 @@ use super::geometry::{Geometry, PreparedMesh, TriangleIndex};
 use super::{Object, ObjectId, ObjectIndex, World};
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, Accelerator, BuildError, Bvh, KdSettings, KdTree, Primitives, Quality, bvh};
+use crate::cancel::CancelToken;
 use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Transform};
 use crate::mesh::Mesh;
@@ -31,6 +32,16 @@ impl CompileOptions {
     fn level(&self) -> Level {
         self.instructions.and_then(InstructionSet::level).unwrap_or_else(Level::new)
     }
+}
+
+/// How a compilation is helped and stopped.
+#[derive(Clone, Debug, Default)]
+pub struct CompileControl<'a> {
+    /// The world of an earlier state of the scene. Meshes that the scene still holds by the same `Arc` keep their
+    /// trees, where the options are the same. It changes nothing in the world but the time that it takes.
+    pub previous: Option<&'a World>,
+    /// Stops it.
+    pub cancel: CancelToken,
 }
 
 /// Why a scene cannot be traced. Nodes, materials and lights are told by name, or by number where they have none.
@@ -81,10 +92,31 @@ pub enum CompileError {
     },
     /// A tree could not be built.
     #[error(transparent)]
-    Tree(#[from] BuildError),
+    Tree(BuildError),
     /// A hierarchy of boxes could not be built.
     #[error(transparent)]
-    Bvh(#[from] bvh::BuildError),
+    Bvh(bvh::BuildError),
+    /// It was cancelled.
+    #[error("the compilation was cancelled")]
+    Cancelled,
+}
+
+impl From<BuildError> for CompileError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Cancelled => Self::Cancelled,
+            BuildError::TooManyPrimitives { .. } => Self::Tree(error),
+        }
+    }
+}
+
+impl From<bvh::BuildError> for CompileError {
+    fn from(error: bvh::BuildError) -> Self {
+        match error {
+            bvh::BuildError::Cancelled => Self::Cancelled,
+            bvh::BuildError::TooManyPrimitives { .. } => Self::Bvh(error),
+        }
+    }
 }
 
 impl World {
@@ -98,6 +130,38 @@ impl World {
     /// # Errors
     /// The first fault found; see [`CompileError`].
     pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<Self, CompileError> {
+        Self::compile_with(scene, options, &CompileControl::default())
+    }
+
+    /// As [`World::compile`], from what an earlier world holds already, and until it is cancelled.
+    ///
+    /// After an edit of a material, a light or a transform, trees over large meshes are not built again:
+    ///
+    /// ```
+    /// # use lancer_core::mesh::{Mesh, MeshData};
+    /// # use lancer_core::scene::{Node, Scene};
+    /// use lancer_core::world::{CompileControl, CompileOptions, World};
+    /// # let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # let triangle = MeshData { positions, indices: vec![[0, 1, 2]], ..MeshData::default() };
+    /// # let mut scene = Scene::new("scan");
+    /// # scene.add(Node::mesh("scan", Mesh::new(triangle)?));
+    /// let options = CompileOptions::default();
+    /// let world = World::compile(&scene, &options)?;
+    /// scene.ambient *= 0.5;
+    /// let control = CompileControl { previous: Some(&world), ..CompileControl::default() };
+    /// let dimmed = World::compile_with(&scene, &options, &control)?;
+    /// # assert_eq!(dimmed.statistics(), world.statistics());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first fault found; see [`CompileError`].
+    pub fn compile_with(
+        scene: &Scene,
+        options: &CompileOptions,
+        control: &CompileControl,
+    ) -> Result<Self, CompileError> {
+        let cancel = &control.cancel;
         check_numbers(scene)?;
         let drawn = count_drawn(scene)?;
         let total = scene.roots().iter().fold(0_u64, |sum, id| sum.saturating_add(drawn[id.index()]));
@@ -110,11 +174,15 @@ impl World {
         let mut materials = scene.materials().to_vec();
         materials.push(Material::named("default"));
         let mut flat = Flat::default();
-        flatten(scene, &drawn, &mut flat)?;
+        flatten(scene, &drawn, cancel, &mut flat)?;
+        let known = control.previous.map(|world| world.prepared_for(options)).unwrap_or_default();
         let meshes = flat
             .meshes
             .into_par_iter()
-            .map(|mesh| Ok(PreparedMesh { index: index_triangles(&mesh, options)?, mesh }))
+            .map(|mesh| match known.get(&address(&mesh)) {
+                Some(&prepared) => Ok(Arc::clone(prepared)),
+                None => Ok(Arc::new(PreparedMesh { index: index_triangles(&mesh, options, cancel)?, mesh })),
+            })
             .collect::<Result<Vec<_>, CompileError>>()?;
         let mut world = Self {
             objects: flat.objects,
@@ -127,13 +195,22 @@ impl World {
             unbounded: Vec::new(),
             index: ObjectIndex::None,
             bounds: Bounds::EMPTY,
+            options: *options,
         };
-        world.index_objects(options)?;
+        world.index_objects(cancel)?;
         Ok(world)
     }
 
+    /// The meshes that a world with these options may share, by where they are: while this world holds them no
+    /// other can be there.
+    fn prepared_for(&self, options: &CompileOptions) -> HashMap<usize, &Arc<PreparedMesh>> {
+        let meshes = if self.options == *options { &self.meshes[..] } else { &[] };
+        meshes.iter().map(|prepared| (address(&prepared.mesh), prepared)).collect()
+    }
+
     /// Sorts objects into bounded and unbounded ones and builds the tree over the former.
-    fn index_objects(&mut self, options: &CompileOptions) -> Result<(), CompileError> {
+    fn index_objects(&mut self, cancel: &CancelToken) -> Result<(), CompileError> {
+        let options = self.options;
         let mut boxes = Vec::new();
         for (index, object) in self.objects.iter().enumerate() {
             let id = ObjectId(index as u32);
@@ -149,19 +226,28 @@ impl World {
         }
         self.index = match options.accelerator {
             Accelerator::Bvh => {
-                ObjectIndex::Bvh { tree: Bvh::build(&boxes, options.quality)?, level: options.level() }
+                let tree = Bvh::build_with(&boxes, options.quality, cancel)?;
+                ObjectIndex::Bvh { tree, level: options.level() }
             }
-            Accelerator::KdTree => ObjectIndex::Kd(KdTree::build(&ObjectBoxes(boxes), options.kd)?),
+            Accelerator::KdTree => {
+                ObjectIndex::Kd(KdTree::build_with(&ObjectBoxes(boxes), options.kd, cancel)?)
+            }
             Accelerator::BruteForce => ObjectIndex::None,
         };
         Ok(())
     }
 }
 
-fn index_triangles(mesh: &Mesh, options: &CompileOptions) -> Result<TriangleIndex, CompileError> {
+fn index_triangles(
+    mesh: &Mesh,
+    options: &CompileOptions,
+    cancel: &CancelToken,
+) -> Result<TriangleIndex, CompileError> {
     Ok(match options.accelerator {
-        Accelerator::Bvh => TriangleIndex::Bvh(TriangleTree::build(mesh, options.quality, options.level())?),
-        Accelerator::KdTree => TriangleIndex::Kd(KdTree::build(mesh, options.kd)?),
+        Accelerator::Bvh => {
+            TriangleIndex::Bvh(TriangleTree::build(mesh, options.quality, options.level(), cancel)?)
+        }
+        Accelerator::KdTree => TriangleIndex::Kd(KdTree::build_with(mesh, options.kd, cancel)?),
         Accelerator::BruteForce => TriangleIndex::None,
     })
 }
@@ -232,7 +318,7 @@ fn count_drawn(scene: &Scene) -> Result<Vec<u64>, CompileError> {
 struct Flat {
     objects: Vec<Object>,
     meshes: Vec<Arc<Mesh>>,
-    mesh_indices: HashMap<*const Mesh, u32>,
+    mesh_indices: HashMap<usize, u32>,
 }
 
 impl Flat {
@@ -243,7 +329,7 @@ impl Flat {
             Shape::Cylinder { capped } => Geometry::Cylinder { capped: *capped },
             Shape::Plane => Geometry::Plane,
             Shape::Mesh(mesh) => {
-                Geometry::Mesh(*self.mesh_indices.entry(Arc::as_ptr(mesh)).or_insert_with(|| {
+                Geometry::Mesh(*self.mesh_indices.entry(address(mesh)).or_insert_with(|| {
                     self.meshes.push(Arc::clone(mesh));
                     (self.meshes.len() - 1) as u32
                 }))
@@ -252,12 +338,20 @@ impl Flat {
     }
 }
 
+/// What tells a mesh from all others, as long as it lives.
+fn address(mesh: &Arc<Mesh>) -> usize {
+    Arc::as_ptr(mesh).addr()
+}
+
 /// Walks the tree from its roots and writes out every shape that is drawn.
-fn flatten(scene: &Scene, drawn: &[u64], out: &mut Flat) -> Result<(), CompileError> {
+fn flatten(scene: &Scene, drawn: &[u64], cancel: &CancelToken, out: &mut Flat) -> Result<(), CompileError> {
     let default_material = MaterialId::from_index(scene.materials().len());
     let mut stack: Vec<(NodeId, Transform, MaterialId)> =
         scene.roots().iter().rev().map(|&id| (id, Transform::IDENTITY, default_material)).collect();
     while let Some((id, world_from_parent, inherited)) = stack.pop() {
+        if cancel.is_cancelled() {
+            return Err(CompileError::Cancelled);
+        }
         if drawn[id.index()] == 0 {
             continue;
         }

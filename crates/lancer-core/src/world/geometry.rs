@@ -53,7 +53,7 @@ impl Geometry {
         }
     }
 
-    pub(super) fn bounds(self, meshes: &[PreparedMesh]) -> Bounds {
+    pub(super) fn bounds(self, meshes: &[Arc<PreparedMesh>]) -> Bounds {
         match self {
             Self::Sphere => sphere::bounds(),
             Self::Cube => cube::bounds(),
@@ -63,7 +63,7 @@ impl Geometry {
         }
     }
 
-    pub(super) fn intersect(self, ray: &Ray, meshes: &[PreparedMesh]) -> Option<Hit> {
+    pub(super) fn intersect(self, ray: &Ray, meshes: &[Arc<PreparedMesh>]) -> Option<Hit> {
         match self {
             Self::Sphere => sphere::intersect(ray),
             Self::Cube => cube::intersect(ray),
@@ -73,7 +73,7 @@ impl Geometry {
         }
     }
 
-    pub(super) fn occluded(self, ray: &Ray, meshes: &[PreparedMesh]) -> bool {
+    pub(super) fn occluded(self, ray: &Ray, meshes: &[Arc<PreparedMesh>]) -> bool {
         match self {
             Self::Sphere => sphere::occluded(ray),
             Self::Cube => cube::occluded(ray),
@@ -83,7 +83,7 @@ impl Geometry {
         }
     }
 
-    pub(super) fn surface(self, ray: &Ray, hit: &Hit, meshes: &[PreparedMesh]) -> SurfacePoint {
+    pub(super) fn surface(self, ray: &Ray, hit: &Hit, meshes: &[Arc<PreparedMesh>]) -> SurfacePoint {
         match self {
             Self::Sphere => sphere::surface(ray, hit),
             Self::Cube => cube::surface(ray, hit),

@@ -117,6 +117,22 @@ impl World {
         !self.material(object.material).transmit.is_black()
     }
 
+    /// The surface that counts at a hit, and the dielectrics that touch it there. An opaque surface that touches a
+    /// transparent one, as where glass stands on a table, is what is seen.
+    pub(crate) fn seen_surface(&self, ray: &Ray, hit: &Hit) -> (Intersection, Vec<Touching>) {
+        let at = self.intersection(ray, hit);
+        if self.material(at.material).transmit.is_black() {
+            return (at, Vec::new());
+        }
+        let touching = self.touching(&at, ray.direction);
+        match touching.iter().find(|other| !other.is_transmissive) {
+            Some(&Touching { object, primitive, .. }) => {
+                (self.intersection(ray, &Hit { t: hit.t, object, primitive }), Vec::new())
+            }
+            None => (at, touching),
+        }
+    }
+
     /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in
     /// `direction` meets them. In the order of their objects' ids; almost always none.
     pub(crate) fn touching(&self, at: &Intersection, direction: DVec3) -> Vec<Touching> {

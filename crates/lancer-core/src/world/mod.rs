@@ -14,6 +14,7 @@
 //! Which of several hits at exactly the same t is reported does not depend on the accelerator: it is that of the
 //! lowest object, and there of the lowest primitive.
 
+mod boxes;
 mod compile;
 mod fan;
 mod geometry;
@@ -22,7 +23,7 @@ mod media;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{CompileError, CompileOptions};
+pub use compile::{CompileControl, CompileError, CompileOptions};
 pub use intersection::Intersection;
 pub use media::Media;
 pub(crate) use media::Touching;
@@ -35,6 +36,7 @@ use crate::geometry::{Bounds, Placement, Ray};
 use crate::scene::{Light, Material, MaterialId, NodeId};
 use fearless_simd::{Level, dispatch};
 use geometry::{Geometry, PreparedMesh};
+use std::sync::Arc;
 
 /// Which object of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -88,7 +90,8 @@ pub struct Hit {
 #[derive(Clone, Debug)]
 pub struct World {
     objects: Vec<Object>,
-    meshes: Vec<PreparedMesh>,
+    /// Shared with the worlds that this one was made from, and that are made from it.
+    meshes: Vec<Arc<PreparedMesh>>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     ambient: Rgb,
@@ -98,6 +101,8 @@ pub struct World {
     unbounded: Vec<ObjectId>,
     index: ObjectIndex,
     bounds: Bounds,
+    /// How it was compiled.
+    options: CompileOptions,
 }
 
 /// What finds the bounded objects, as numbers of their places in `bounded`.
@@ -185,7 +190,7 @@ impl World {
     /// What it holds.
     pub fn statistics(&self) -> WorldStatistics {
         let sizes = || self.meshes.iter().map(|mesh| mesh.index.size()).chain([self.index.size()]);
-        let triangles = |mesh: &PreparedMesh| mesh.mesh.triangle_count() as u64;
+        let triangles = |mesh: &Arc<PreparedMesh>| mesh.mesh.triangle_count() as u64;
         WorldStatistics {
             objects: self.objects.len(),
             meshes: self.meshes.len(),

@@ -4,6 +4,7 @@ use super::model::FORMAT;
 use super::syntax::{Entry, Node, Origin, Place, Scalar, Value};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
+use lancer_core::film::Tone;
 use lancer_core::geometry::DVec3;
 use lancer_core::scene::{Light, Material, Scene, Settings, Texture};
 use std::collections::HashSet;
@@ -27,7 +28,7 @@ pub(crate) fn export(scene: &Scene) -> Rc<Node> {
         ("background", rgb(scene.background)),
         ("lights", list(scene.lights.iter().map(of_light))),
         ("materials", mapping(materials)),
-        ("render", of_settings(&scene.settings)),
+        ("render", of_settings(&scene.settings, scene.tone)),
     ])
 }
 
@@ -66,12 +67,12 @@ fn of_material(material: &Material) -> Rc<Node> {
         ("reflect", rgb(material.reflect)),
         ("transmit", rgb(material.transmit)),
         ("ior", number(material.ior)),
-        ("fresnel", leaf(Scalar::Bool(material.fresnel))),
+        ("fresnel", boolean(material.fresnel)),
     ];
     mapping(color.map(|color| ("color", color)).into_iter().chain(coefficients))
 }
 
-fn of_settings(settings: &Settings) -> Rc<Node> {
+fn of_settings(settings: &Settings, tone: Tone) -> Rc<Node> {
     let ao = mapping([("samples", integer(settings.ao.samples)), ("distance", number(settings.ao.distance))]);
     mapping([
         ("width", integer(settings.width)),
@@ -79,6 +80,10 @@ fn of_settings(settings: &Settings) -> Rc<Node> {
         ("samples", integer(settings.samples)),
         ("depth", integer(settings.depth)),
         ("ao", ao),
+        ("shadows", boolean(settings.shadows)),
+        ("reflection", boolean(settings.reflection)),
+        ("refraction", boolean(settings.refraction)),
+        ("exposure", number(tone.exposure)),
     ])
 }
 
@@ -96,6 +101,10 @@ fn number(value: f64) -> Rc<Node> {
 
 fn integer(value: u32) -> Rc<Node> {
     leaf(Scalar::Integer(value.into()))
+}
+
+fn boolean(value: bool) -> Rc<Node> {
+    leaf(Scalar::Bool(value))
 }
 
 fn text(value: &str) -> Rc<Node> {

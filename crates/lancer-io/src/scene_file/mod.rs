@@ -15,6 +15,7 @@ mod build;
 mod deserialize;
 mod export;
 mod model;
+mod origins;
 mod overrides;
 mod report;
 mod schema;
@@ -22,6 +23,7 @@ mod syntax;
 
 pub use apply::apply_overrides;
 pub use assets::{Assets, Model};
+pub use origins::Origins;
 pub use overrides::{Override, OverrideError};
 pub use schema::json_schema;
 
@@ -65,7 +67,8 @@ pub fn read(
     if !built.problems.is_empty() {
         return Err(failed(built.problems));
     }
-    Ok(Loaded { scene: built.scene, warnings: report.warnings(built.warnings) })
+    let origins = Origins::of(&file, &built.scene);
+    Ok(Loaded { scene: built.scene, warnings: report.warnings(built.warnings), origins })
 }
 
 /// The edited tree of a file, and the problems that left one.

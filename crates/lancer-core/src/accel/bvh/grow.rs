@@ -10,6 +10,7 @@ use super::lattice::Cells;
 use super::split::{Parts, part, part_at_median};
 use super::{Bvh, Quality};
 use crate::accel::Aabb;
+use crate::cancel::CancelToken;
 use rayon::prelude::*;
 
 /// Ranges above this size are sorted into cells.
@@ -25,6 +26,9 @@ const FEW_CELLS: usize = 32;
 /// Ranges of fewer primitives are parted by primitives.
 const FEW_PRIMITIVES: usize = 512;
 
+/// Smaller ranges are done sooner than anyone waits for the end of a build that is cancelled.
+const COARSE: usize = 1 << 12;
+
 /// A binary tree in pieces, and its primitives from leaf to leaf.
 pub(super) struct Grown {
     /// The first has the root; none where there are no primitives.
@@ -32,19 +36,23 @@ pub(super) struct Grown {
     pub(super) order: Vec<u32>,
 }
 
-pub(super) fn grow(boxes: &[Aabb], quality: Quality) -> Grown {
+/// The tree over some boxes; none where it was cancelled.
+pub(super) fn grow(boxes: &[Aabb], quality: Quality, cancel: &CancelToken) -> Option<Grown> {
     if boxes.is_empty() {
-        return Grown { pieces: Vec::new(), order: Vec::new() };
+        return Some(Grown { pieces: Vec::new(), order: Vec::new() });
     }
     let mut items = vec![Extent::EMPTY; boxes.len()];
-    let grower = Grower { quality };
+    let grower = Grower { quality, cancel };
     let tree = grower.range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
+    if cancel.is_cancelled() {
+        return None;
+    }
     let order = items.par_iter().with_min_len(1 << 14).map(Extent::name).collect();
     let mut pieces = vec![Vec::new()];
     let mut crown = Vec::new();
     tree.take_apart(&mut crown, &mut pieces);
     pieces[0] = crown;
-    Grown { pieces, order }
+    Some(Grown { pieces, order })
 }
 
 /// A part of the tree under construction.
@@ -96,11 +104,13 @@ impl Plan {
     }
 }
 
-struct Grower {
+struct Grower<'a> {
     quality: Quality,
+    /// Once it is cancelled nothing is parted any more: the rest of the tree takes no time, and is thrown away.
+    cancel: &'a CancelToken,
 }
 
-impl Grower {
+impl Grower<'_> {
     /// The tree over all items, which are written in the order of its leaves.
     fn range(&self, items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
         let count = out.len();
@@ -163,13 +173,14 @@ impl Grower {
         let costs = self.subtree(items, &bounds, depth, &mut nodes);
         Tree::Piece(nodes, costs)
     }
+
     /// Appends the tree over a range.
     fn subtree(&self, items: &mut [Extent], bounds: &Extent, depth: u32, out: &mut Vec<Binary>) -> Costs {
         let (parent, count) = (out.len(), items.len());
         let area = bounds.half_area();
         let (costs, choice) = leaf(area, count);
         out.push(Binary { bounds: bounds.to_aabb(), above: 0, choice });
-        if count <= BLOCK {
+        if count <= BLOCK || (count >= COARSE && self.cancel.is_cancelled()) {
             return costs;
         }
         let parts = if is_deep(depth, count) { part_at_median(items) } else { part(items, self.quality) };

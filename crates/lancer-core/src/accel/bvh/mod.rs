@@ -10,6 +10,7 @@
 //! for the collapse.
 
 mod binary;
+mod boxes;
 mod collapse;
 mod cost;
 mod extent;
@@ -21,10 +22,12 @@ mod split;
 mod tests;
 mod validate;
 
+pub(crate) use boxes::boxes_at;
 pub use node::{Child, MAX_LEAF, WIDTH, WideNode};
 pub use validate::Defect;
 
 use super::Aabb;
+use crate::cancel::CancelToken;
 
 /// How much time a build may take for how good a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +49,9 @@ pub enum BuildError {
         /// How many there are.
         count: usize,
     },
+    /// It was cancelled.
+    #[error("the build was cancelled")]
+    Cancelled,
 }
 
 /// A hierarchy of boxes over primitives that are named by their index.
@@ -73,11 +79,19 @@ impl Bvh {
     /// # Errors
     /// [`BuildError::TooManyPrimitives`].
     pub fn build(boxes: &[Aabb], quality: Quality) -> Result<Self, BuildError> {
+        Self::build_with(boxes, quality, &CancelToken::default())
+    }
+
+    /// As [`Bvh::build`], until it is cancelled.
+    ///
+    /// # Errors
+    /// See [`BuildError`].
+    pub fn build_with(boxes: &[Aabb], quality: Quality, cancel: &CancelToken) -> Result<Self, BuildError> {
         let count = boxes.len();
         if count > Self::MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives { count });
         }
-        let grown = grow::grow(boxes, quality);
+        let grown = grow::grow(boxes, quality, cancel).ok_or(BuildError::Cancelled)?;
         Ok(collapse::collapse(grown))
     }
 

@@ -8,6 +8,7 @@ use super::super::{Aabb, Primitives};
 use super::node::{MAX_INDEX, Node};
 use super::split::{Reference, Split, best_split, leaf_cost};
 use super::{BuildError, KdSettings, KdTree};
+use crate::cancel::CancelToken;
 
 /// The most references a tree holds for each primitive, on average; one less bounds its splits. Past that nodes
 /// become leaves: memory stays linear in the input however the primitives lie. Ordinary meshes need 2 to 3 of each.
@@ -23,7 +24,11 @@ const PATIENCE: u32 = 2;
 /// costs a tenth of the rays per second.
 const DEFAULT_LEAF: u32 = 3;
 
-pub(super) fn build(primitives: &impl Primitives, settings: KdSettings) -> Result<KdTree, BuildError> {
+pub(super) fn build(
+    primitives: &impl Primitives,
+    settings: KdSettings,
+    cancel: &CancelToken,
+) -> Result<KdTree, BuildError> {
     let count = primitives.count();
     if count > KdTree::MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { count });
@@ -40,10 +45,14 @@ pub(super) fn build(primitives: &impl Primitives, settings: KdSettings) -> Resul
         primitives,
         leaf: settings.leaf.unwrap_or(DEFAULT_LEAF) as usize,
         max_depth: settings.depth.unwrap_or_else(|| default_depth(count)).min(KdTree::MAX_DEPTH),
+        cancel,
     };
     let spare = count.saturating_mul(REFERENCES_PER_PRIMITIVE - 1);
     let mut tree = Subtree::default();
     builder.build(Cell { references, bounds, depth: 0, spare, setbacks: 0 }, &mut tree);
+    if cancel.is_cancelled() {
+        return Err(BuildError::Cancelled);
+    }
     tree.nodes.shrink_to_fit();
     tree.references.shrink_to_fit();
     Ok(KdTree { bounds, nodes: tree.nodes, references: tree.references, depth: tree.depth })
@@ -98,6 +107,8 @@ struct Builder<'a, P> {
     primitives: &'a P,
     leaf: usize,
     max_depth: u32,
+    /// Once it is cancelled all nodes become leaves: the rest of the tree takes no time, and is thrown away.
+    cancel: &'a CancelToken,
 }
 
 impl<P: Primitives> Builder<'_, P> {
@@ -129,7 +140,7 @@ impl<P: Primitives> Builder<'_, P> {
     /// The best split and the two cells that it makes; none where the cell should be a leaf.
     fn divide(&self, cell: &Cell) -> Option<(Split, [Cell; 2])> {
         let count = cell.references.len();
-        if count <= self.leaf || cell.depth >= self.max_depth {
+        if count <= self.leaf || cell.depth >= self.max_depth || self.cancel.is_cancelled() {
             return None;
         }
         let split = best_split(&cell.references, &cell.bounds)?;

@@ -18,7 +18,8 @@ mod validate;
 pub use validate::{Defect, NodeKind, NodeVisit};
 
 use super::{Aabb, Primitives};
-use node::Node;
+use crate::cancel::CancelToken;
+use node::{Kind, Node};
 
 /// The two numbers that bound a tree. `None` leaves a number to the renderer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +39,9 @@ pub enum BuildError {
         /// How many there are.
         count: usize,
     },
+    /// It was cancelled.
+    #[error("the build was cancelled")]
+    Cancelled,
 }
 
 /// A k-d tree over primitives that are named by their index.
@@ -66,7 +70,37 @@ impl KdTree {
     /// # Errors
     /// [`BuildError::TooManyPrimitives`].
     pub fn build(primitives: &impl Primitives, settings: KdSettings) -> Result<Self, BuildError> {
-        build::build(primitives, settings)
+        Self::build_with(primitives, settings, &CancelToken::default())
+    }
+
+    /// As [`KdTree::build`], until it is cancelled.
+    ///
+    /// # Errors
+    /// See [`BuildError`].
+    pub fn build_with(
+        primitives: &impl Primitives,
+        settings: KdSettings,
+        cancel: &CancelToken,
+    ) -> Result<Self, BuildError> {
+        build::build(primitives, settings, cancel)
+    }
+
+    /// The cells at `level`, the root's being 0: at most `most`, in the order of the tree.
+    pub fn cells_at(&self, level: u32, most: usize) -> Vec<Aabb> {
+        let mut cells = Vec::new();
+        let mut pending = vec![(0, self.bounds, 0)];
+        while cells.len() < most
+            && let Some((index, cell, depth)) = pending.pop()
+        {
+            if depth == level {
+                cells.push(cell);
+            } else if let Kind::Inner { axis, position, above } = self.nodes[index].kind() {
+                let [lower, upper] = cell.split(axis, position);
+                pending.push((above as usize, upper, depth + 1));
+                pending.push((index + 1, lower, depth + 1));
+            }
+        }
+        cells
     }
 
     /// The box around all primitives.

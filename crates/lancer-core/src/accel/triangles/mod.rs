@@ -18,7 +18,8 @@ pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
 use super::Aabb;
-use super::bvh::{BuildError, Bvh, Child, Quality, WideNode};
+use super::bvh::{BuildError, Bvh, Child, Quality, WideNode, boxes_at};
+use crate::cancel::CancelToken;
 use crate::geometry::{Bounds, DirectionFan, Ray};
 use crate::mesh::Mesh;
 use crate::shape::Hit;
@@ -60,14 +61,19 @@ pub(crate) struct TriangleTree {
 }
 
 impl TriangleTree {
-    /// Builds the tree, on the threads of the current rayon pool.
+    /// Builds the tree, on the threads of the current rayon pool, until it is cancelled.
     ///
     /// # Errors
-    /// [`BuildError::TooManyPrimitives`].
-    pub(crate) fn build(mesh: &Mesh, quality: Quality, level: Level) -> Result<Self, BuildError> {
+    /// See [`BuildError`].
+    pub(crate) fn build(
+        mesh: &Mesh,
+        quality: Quality,
+        level: Level,
+        cancel: &CancelToken,
+    ) -> Result<Self, BuildError> {
         let boxes: Vec<Aabb> =
             (0..mesh.triangle_count() as u32).into_par_iter().map(|id| box_of(&mesh.vertices(id))).collect();
-        let bvh = Bvh::build(&boxes, quality)?;
+        let bvh = Bvh::build_with(&boxes, quality, cancel)?;
         drop(boxes);
         let depth = bvh.depth();
         let (mut nodes, order) = bvh.into_parts();
@@ -86,6 +92,11 @@ impl TriangleTree {
             .map(|ids| Block::new(ids, |id| mesh.vertices(id)))
             .collect();
         Ok(Self { nodes, blocks, bounds: mesh.bounds(), depth, level })
+    }
+
+    /// The boxes `level` steps below the root's: at most `most`.
+    pub(crate) fn boxes_at(&self, level: u32, most: usize) -> Vec<Aabb> {
+        boxes_at(&self.nodes, Aabb::around(&self.bounds), level, most)
     }
 
     /// Nodes of the hierarchy.

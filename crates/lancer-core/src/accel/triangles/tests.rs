@@ -11,6 +11,10 @@ fn levels() -> impl Iterator<Item = Level> {
     InstructionSet::ALL.into_iter().filter_map(InstructionSet::level)
 }
 
+fn build(mesh: &Mesh, level: Level) -> TriangleTree {
+    TriangleTree::build(mesh, Quality::High, level, &CancelToken::default()).unwrap()
+}
+
 fn moved(mut data: MeshData, scale: f32, offset: f32) -> Mesh {
     for position in &mut data.positions {
         *position = position.map(|x| x * scale + offset);
@@ -90,8 +94,7 @@ fn nearest_and_any_hit_are_those_of_the_canonical_test_on_every_triangle() {
     let mut random = Random::new(1);
     let (mut hits, mut misses) = (0, 0);
     for mesh in meshes() {
-        let trees: Vec<_> =
-            levels().map(|level| TriangleTree::build(&mesh, Quality::High, level).unwrap()).collect();
+        let trees: Vec<_> = levels().map(|level| build(&mesh, level)).collect();
         for _ in 0..400 {
             let ray = ray(&mut random, &mesh);
             let mut nearest = Nearest::new(&ray);
@@ -114,7 +117,7 @@ fn most_rays_are_settled_without_the_canonical_test() {
     // Not a matter of right or wrong, but of all the speed: a bound that is far too loose would pass every other
     // test. Counted at a ball of 20,000 triangles seen from outside.
     let mesh = Mesh::new(ball(100, 100)).unwrap();
-    let tree = TriangleTree::build(&mesh, Quality::High, Level::new()).unwrap();
+    let tree = build(&mesh, Level::new());
     let mut random = Random::new(2);
     let (mut tested, mut unsure) = (0, 0);
     for _ in 0..2000 {
@@ -148,7 +151,7 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
         let mesh = moved(soup(5, triangles).data().clone(), scale, 0.0);
         let scale = f64::from(scale);
         for level in levels() {
-            let tree = TriangleTree::build(&mesh, Quality::High, level).unwrap();
+            let tree = build(&mesh, level);
             for _ in 0..60 {
                 let normal = random.direction();
                 let point = random.point(1.0) * scale;

@@ -6,10 +6,12 @@
 mod parse;
 mod scalar;
 mod text;
+mod write;
 
 pub(crate) use parse::{Parsed, parse};
 pub(crate) use scalar::Scalar;
 pub(crate) use text::decode;
+pub(crate) use write::{Language, flow};
 
 use std::cell::Cell;
 use std::rc::Rc;

@@ -1,0 +1,51 @@
+//! The boxes of objects and trees in the world, to be looked at.
+//!
+//! Shape: a box is its eight corners, in the order of [`Bounds::corners`]; it may be turned and sheared.
+
+use super::geometry::TriangleIndex;
+use super::{ObjectId, ObjectIndex, World};
+use crate::accel::bvh::boxes_at;
+use crate::geometry::{Bounds, DVec3};
+
+impl World {
+    /// A box around an object; unbounded where the object is.
+    ///
+    /// # Panics
+    /// Where `id` is of another world and out of range here, as all that ask for an object.
+    pub fn object_bounds(&self, id: ObjectId) -> Bounds {
+        let object = self.object(id);
+        object.placement.bounds_to_world(object.geometry.bounds(&self.meshes))
+    }
+
+    /// The corners of an object's own box, which turns with it; none where it is unbounded.
+    pub fn object_corners(&self, id: ObjectId) -> Option<[DVec3; 8]> {
+        let object = self.object(id);
+        let bounds = object.geometry.bounds(&self.meshes);
+        bounds.is_finite().then(|| bounds.corners().map(|corner| object.placement.point_to_world(corner)))
+    }
+
+    /// The boxes at a level of the tree over the objects, the root's being 0: at most `most`. Those of leaves that
+    /// end above the level are left out. None where there is no tree.
+    pub fn objects_tree_boxes(&self, level: u32, most: usize) -> Vec<[DVec3; 8]> {
+        let boxes = match &self.index {
+            _ if self.bounded.is_empty() => Vec::new(),
+            ObjectIndex::Bvh { tree, .. } => boxes_at(tree.nodes(), tree.bounds(), level, most),
+            ObjectIndex::Kd(tree) => tree.cells_at(level, most),
+            ObjectIndex::None => Vec::new(),
+        };
+        boxes.iter().map(|aabb| aabb.to_bounds().corners()).collect()
+    }
+
+    /// The same of the tree over the triangles of an object's mesh. None where the object has no mesh.
+    pub fn mesh_tree_boxes(&self, id: ObjectId, level: u32, most: usize) -> Vec<[DVec3; 8]> {
+        let object = self.object(id);
+        let Some(mesh) = object.geometry.mesh_index() else { return Vec::new() };
+        let boxes = match &self.meshes[mesh].index {
+            TriangleIndex::Bvh(tree) => tree.boxes_at(level, most),
+            TriangleIndex::Kd(tree) => tree.cells_at(level, most),
+            TriangleIndex::None => Vec::new(),
+        };
+        let to_world = |corner| object.placement.point_to_world(corner);
+        boxes.iter().map(|aabb| aabb.to_bounds().corners().map(to_world)).collect()
+    }
+}

@@ -1,0 +1,8 @@
+//! What is drawn around the view.
+//!
+//! A panel reads what it is given, draws it, and says as [`Action`](crate::Action)s what the user wants. It changes
+//! nothing itself but its own state, as what is typed or unfolded.
+
+mod fields;
+mod scenes;
+pub mod settings;
