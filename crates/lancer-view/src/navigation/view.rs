@@ -100,7 +100,8 @@ impl View {
         let up = if upright.abs() > UPRIGHT { self.vertical * upright.signum() } else { up };
         let target = eye - backward * reach(eye, backward, interest);
         let camera = Camera { eye, target, up, ..self.camera };
-        let valid = interest.is_finite() && camera.frame().is_ok_and(|[as_told, ..]| as_told.dot(right) > 0.5);
+        let valid =
+            interest.is_finite() && camera.frame().is_ok_and(|[as_told, ..]| as_told.dot(right) > 0.5);
         if valid { Self { camera, interest, ..*self } } else { *self }
     }
 

@@ -4,5 +4,7 @@
 //! nothing itself but its own state, as what is typed or unfolded.
 
 mod fields;
+pub mod inspector;
+pub mod scene_tree;
 mod scenes;
 pub mod settings;
