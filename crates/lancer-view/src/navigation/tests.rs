@@ -1,3 +1,4 @@
+<<<<<<< HEAD
 use super::*;
 use proptest::prelude::*;
 
@@ -373,3 +374,6 @@ proptest! {
         }
     }
 }
+=======
+
+>>>>>>> doc

@@ -180,7 +180,7 @@ fn cell<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// A number to type or to drag. What is typed counts once it is finished, so that 1920 is not rendered at 1, 19 and
 /// 192 first.
-fn number<N: Numeric>(
+pub(super) fn number<N: Numeric>(
     ui: &mut Ui,
     language: Language,
     value: &mut N,

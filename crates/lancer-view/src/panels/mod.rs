@@ -4,9 +4,14 @@
 //! nothing itself but its own state, as what is typed or unfolded.
 
 mod fields;
+<<<<<<< HEAD
 pub mod file_picker;
 pub mod menu_bar;
 pub mod messages;
 pub mod palette;
+=======
+pub mod inspector;
+pub mod scene_tree;
+>>>>>>> doc
 mod scenes;
 pub mod settings;
