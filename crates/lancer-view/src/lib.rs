@@ -22,7 +22,12 @@ pub use app::{Action, Selection};
 pub use commands::{Command, CommandContext};
 pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
-pub use preferences::{Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace};
+pub use preferences::{
+    Panels, Preferences, PreferencesFile, PreferencesWarning, RecentFiles, Theme, WindowPlace,
+};
 pub use source::Source;
 pub use watch::{Watch, WatchError};
-pub use worker::{Channel, Event, Frame, OpenStage, Opened, Progress, RenderFault, RenderId, RenderRequest, Rendered, ViewRequest, Worker};
+pub use worker::{
+    Channel, Event, Frame, OpenStage, Opened, Progress, RenderFault, RenderId, RenderRequest, Rendered,
+    ViewRequest, Worker,
+};

@@ -2,8 +2,8 @@
 
 use eframe::egui::style::WidgetVisuals;
 use eframe::egui::{
-    Color32, Context, CornerRadius, Margin, Shadow, Stroke, Style, TextStyle, Theme as Shade, ThemePreference,
-    Visuals, vec2,
+    Color32, Context, CornerRadius, Margin, Shadow, Stroke, Style, TextStyle, Theme as Shade,
+    ThemePreference, Visuals, vec2,
 };
 
 /// Gives a window both looks; it then follows the system until [`choose`] says otherwise.
@@ -138,7 +138,8 @@ fn visuals(palette: &Palette) -> Visuals {
     visuals.faint_bg_color = palette.raised;
     visuals.code_bg_color = palette.field;
     visuals.indent_has_left_vline = false;
-    let shadow = |blur, alpha| Shadow { offset: [0, 4], blur, spread: 0, color: Color32::from_black_alpha(alpha) };
+    let shadow =
+        |blur, alpha| Shadow { offset: [0, 4], blur, spread: 0, color: Color32::from_black_alpha(alpha) };
     visuals.popup_shadow = shadow(12, 60);
     visuals.window_shadow = shadow(24, 90);
     visuals
@@ -164,7 +165,14 @@ mod tests {
     fn every_text_is_readable_on_all_that_it_stands_on() {
         for shade in [Shade::Dark, Shade::Light] {
             let palette = Palette::of(shade);
-            let texts = [palette.text, palette.strong_text, palette.weak_text, palette.link, palette.warning, palette.error];
+            let texts = [
+                palette.text,
+                palette.strong_text,
+                palette.weak_text,
+                palette.link,
+                palette.warning,
+                palette.error,
+            ];
             for ground in [palette.ground, palette.raised, palette.field] {
                 for text in texts {
                     assert!(contrast(text, ground) >= 4.5, "{shade:?}: {text:?} on {ground:?}");

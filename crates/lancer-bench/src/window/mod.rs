@@ -52,6 +52,8 @@ struct Run {
     refinements: Vec<f64>,
     /// Between the pictures that are seen while the mouse moves on and on.
     gaps: Vec<f64>,
+    /// From a move of the mouse onto a menu until it lights up, from the first moment of another start on.
+    answers: Vec<f64>,
     /// Processors in use while nothing happens: 1 is all of one.
     idle: f64,
 }
@@ -64,9 +66,9 @@ pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
         plan.width, plan.height
     );
     println!(
-        "| scene | window, s | first picture, s | sharp, s | move to change, ms | slowest | to sharp, ms | in a drag, 1/s | longest gap, ms | idle |"
+        "| scene | window, s | first picture, s | sharp, s | move to change, ms | slowest | to sharp, ms | in a drag, 1/s | longest gap, ms | slowest answer, ms | idle |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     let mut records = Vec::new();
     for scene in &plan.scenes {
         let runs = (0..plan.runs.max(1)).map(|_| run(plan, &lancer, scene)).collect::<Result<Vec<_>, _>>()?;
@@ -88,6 +90,9 @@ fn run(plan: &Plan, lancer: &Path, scene: &str) -> Result<Run, Failure> {
     let moves = (0..plan.moves).map(|_| session.watch_move()).collect::<Result<Vec<_>, _>>()?;
     let (changes, refinements) = moves.into_iter().unzip();
     let gaps = session.watch_drag()?;
+    let idle = session.watch_idleness()?;
+    drop(session);
+    let answers = Session::start(&display, lancer, scene, middle(&display))?.watch_answers()?;
     Ok(Run {
         window: started.window,
         first_picture: started.first_picture,
@@ -95,7 +100,8 @@ fn run(plan: &Plan, lancer: &Path, scene: &str) -> Result<Run, Failure> {
         changes,
         refinements,
         gaps,
-        idle: session.watch_idleness()?,
+        answers,
+        idle,
     })
 }
 
@@ -113,7 +119,7 @@ fn row(name: &str, runs: &[Run]) -> String {
         [all(|run| &run.changes), all(|run| &run.refinements), all(|run| &run.gaps)];
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     format!(
-        "| {name} | {:.2} | {:.2} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1}% |",
+        "| {name} | {:.2} | {:.2} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1}% |",
         of(|run| run.window),
         of(|run| run.first_picture),
         of(|run| run.sharp),
@@ -122,6 +128,7 @@ fn row(name: &str, runs: &[Run]) -> String {
         1e3 * median(&refinements),
         1.0 / median(&gaps),
         1e3 * most(&gaps),
+        1e3 * most(&all(|run| &run.answers)),
         100.0 * of(|run| run.idle),
     )
 }
@@ -136,6 +143,7 @@ impl Run {
             "change_seconds": self.changes,
             "refinement_seconds": self.refinements,
             "drag_gap_seconds": self.gaps,
+            "answer_seconds": self.answers,
             "idle_processors": self.idle,
         })
     }

@@ -25,6 +25,13 @@ const DRAG: Duration = Duration::from_secs(3);
 /// As often as a mouse tells of its moves to a screen of 60 Hz.
 const BETWEEN_MOVES: Duration = Duration::from_millis(16);
 
+/// Where the menus are, and in it the first two of them: they light up under the mouse, whatever else goes on.
+const MENUS: Area = Area { x: 0, y: 0, width: 160, height: 24 };
+const TWO_MENUS: [(i32, i32); 2] = [(20, 12), (60, 12)];
+
+/// How long the interface is asked for answers: while a large model is read and compiled, and then refined.
+const ASKING: Duration = Duration::from_secs(5);
+
 /// How long the program is left alone to see what it uses then.
 const IDLE: Duration = Duration::from_secs(10);
 
@@ -67,6 +74,26 @@ impl<'a> Session<'a> {
         })?;
         let sharp = self.last_change()? - self.begun;
         Ok(Started { window, first_picture, sharp: sharp.as_secs_f64() })
+    }
+
+    /// Moves the mouse from menu to menu, from the moment when the window is seen. Returns the seconds until each
+    /// lights up.
+    pub(super) fn watch_answers(&mut self) -> Result<Vec<f64>, Failure> {
+        self.program.place_window(self.display.area())?;
+        let look = || self.display.picture_of(MENUS);
+        wait_for("the menus", || Ok((look()?.colours() > 2).then_some(())))?;
+        let begun = Instant::now();
+        let mut answers = Vec::new();
+        for &menu in TWO_MENUS.iter().cycle() {
+            let before = look()?;
+            let moved = Instant::now();
+            self.display.warp_to(menu)?;
+            answers.push((wait_for_change(look, &before)? - moved).as_secs_f64());
+            if begun.elapsed() > ASKING {
+                break;
+            }
+        }
+        Ok(answers)
     }
 
     /// Moves the mouse once, the left button held, and lets it go. Returns the seconds until the picture changes,
