@@ -64,7 +64,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     Ok(Loaded { warnings, ..Loaded::from(scene) })
 }
 
-fn is_scene_file(path: &Path) -> bool {
+/// Whether a file is a scene file, by its name.
+pub fn is_scene_file(path: &Path) -> bool {
     path.extension()
         .is_some_and(|found| SCENE_EXTENSIONS.iter().any(|known| found.eq_ignore_ascii_case(known)))
 }

@@ -12,13 +12,15 @@ mod language;
 pub mod navigation;
 pub mod overlay;
 pub mod panels;
+pub mod picture;
 pub mod preferences;
 mod source;
 pub mod theme;
 pub mod watch;
+mod window;
 pub mod worker;
 
-pub use app::{Action, Selection};
+pub use app::{Action, App, Options, Remembered, Selection};
 pub use commands::{Command, CommandContext};
 pub use document::{Document, Edit, EditKind};
 pub use language::{Language, Phrase};
@@ -27,6 +29,7 @@ pub use preferences::{
 };
 pub use source::Source;
 pub use watch::{Watch, WatchError};
+pub use window::{WindowError, run};
 pub use worker::{
     Channel, Event, Frame, OpenStage, Opened, Progress, RenderFault, RenderId, RenderRequest, Rendered,
     ViewRequest, Worker,

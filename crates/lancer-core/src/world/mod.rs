@@ -154,6 +154,11 @@ impl World {
         &self.objects
     }
 
+    /// The ids of all objects, in their order.
+    pub fn object_ids(&self) -> impl Iterator<Item = ObjectId> + use<> {
+        (0..self.objects.len() as u32).map(ObjectId)
+    }
+
     /// An object.
     ///
     /// # Panics

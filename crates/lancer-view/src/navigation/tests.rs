@@ -1,4 +1,3 @@
-<<<<<<< HEAD
 use super::*;
 use proptest::prelude::*;
 
@@ -374,6 +373,3 @@ proptest! {
         }
     }
 }
-=======
-
->>>>>>> doc
