@@ -5,7 +5,7 @@ use lancer_xvfb::Button;
 
 #[test]
 fn each_button_moves_the_view_and_home_goes_back() {
-    sit("mouse", ["whitted"], |sitting| {
+    sit("mouse", &["whitted"], &[], |sitting| {
         sitting.wait_for_title("whitted - Lancer")?;
         let home = sitting.see("home")?;
         for (button, by, name) in [
@@ -26,7 +26,7 @@ fn each_button_moves_the_view_and_home_goes_back() {
 
 #[test]
 fn the_wheel_goes_nearer_and_back() {
-    sit("wheel", ["whitted"], |sitting| {
+    sit("wheel", &["whitted"], &[], |sitting| {
         let home = sitting.see("home")?;
         sitting.wheel(Button::WheelUp)?;
         let nearer = sitting.see("nearer")?;

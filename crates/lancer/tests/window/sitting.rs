@@ -1,7 +1,6 @@
 //! A person before the window, for the length of a test.
 
 use lancer_xvfb::{Area, Button, Display, Failure, FileDrag, Picture, Program, missing_tools};
-use std::ffi::OsStr;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,24 +16,15 @@ pub(crate) const VIEW: Area = Area { x: 330, y: 250, width: 560, height: 300 };
 /// More colours than a panel or an empty viewport has.
 const COLOURS_OF_A_SCENE: usize = 200;
 
-/// Lets a person sit before a window that was opened with these arguments, in a directory of their own, and checks
-/// that the program said nothing to the terminal.
+/// Lets a person sit before a window that was opened with these arguments, in a directory with these files, and
+/// checks that the program said nothing to the terminal.
 ///
 /// # Panics
 /// Something did not go as it should; what the program said and what was seen last is told.
-pub(crate) fn sit<S: AsRef<OsStr>>(
+pub(crate) fn sit(
     name: &str,
-    arguments: impl IntoIterator<Item = S>,
-    test: impl FnOnce(&mut Sitting<'_>) -> Result<(), Failure>,
-) {
-    sit_in(tempfile::tempdir().unwrap(), name, arguments, test);
-}
-
-/// As [`sit`], in a directory that is there already.
-pub(crate) fn sit_in<S: AsRef<OsStr>>(
-    directory: TempDir,
-    name: &str,
-    arguments: impl IntoIterator<Item = S>,
+    arguments: &[&str],
+    files: &[(&str, &str)],
     test: impl FnOnce(&mut Sitting<'_>) -> Result<(), Failure>,
 ) {
     let missing = missing_tools();
@@ -44,6 +34,8 @@ pub(crate) fn sit_in<S: AsRef<OsStr>>(
         let _ = writeln!(std::io::stderr(), "SKIPPED: the window was not tested, for want of {missing:?}");
         return;
     }
+    let directory = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, text)| fs::write(directory.path().join(name), text).unwrap());
     let display = Display::start(SIZE.0, SIZE.1).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_lancer"));
     let program = Program::start(
@@ -103,7 +95,8 @@ impl Sitting<'_> {
         self.view()
     }
 
-    fn keep(&mut self, step: &str) -> Result<PathBuf, Failure> {
+    /// Keeps a picture of all that is seen now under this name.
+    pub(crate) fn keep(&mut self, step: &str) -> Result<PathBuf, Failure> {
         self.steps += 1;
         let path = self.pictures.join(format!("{:02}-{step}.png", self.steps));
         self.display.picture()?.save(&path)?;
