@@ -60,6 +60,14 @@ impl Diagnostic {
         self.hint = Some(hint.into());
         self
     }
+
+    /// The line with its number, and below it a mark under the place, for a font whose letters are equally wide.
+    pub fn excerpt(&self) -> Option<String> {
+        let (source, Location { line, column }) = (self.source_line.as_ref()?, self.location?);
+        let (shown, mark) = excerpt(source, column);
+        let gutter = line.to_string().len();
+        Some(format!("{line} | {shown}\n{:gutter$} | {:>mark$}", "", "^"))
+    }
 }
 
 /// Longest line that a diagnostic keeps, in bytes: enough for a scene that a program wrote on one line, and small
@@ -76,10 +84,8 @@ impl fmt::Display for Diagnostic {
             write!(f, ":{line}:{column}")?;
         }
         write!(f, ": {}", self.message)?;
-        if let (Some(source), Some(Location { line, column })) = (&self.source_line, self.location) {
-            let (shown, mark) = excerpt(source, column);
-            let gutter = line.to_string().len();
-            write!(f, "\n  {line} | {shown}\n  {:gutter$} | {:>mark$}", "", "^")?;
+        for line in self.excerpt().iter().flat_map(|excerpt| excerpt.lines()) {
+            write!(f, "\n  {line}")?;
         }
         if let Some(hint) = &self.hint {
             write!(f, "\nhint: {hint}")?;

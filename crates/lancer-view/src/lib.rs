@@ -14,6 +14,7 @@ pub mod overlay;
 mod panels;
 mod preferences;
 mod source;
+mod theme;
 mod watch;
 
 pub use app::{Action, Selection};

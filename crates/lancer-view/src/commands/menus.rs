@@ -57,7 +57,7 @@ const VIEW: &[Item] = &[
     Item::Command(Command::FrameSelection),
     Item::Command(Command::Home),
     Item::Submenu(
-        Phrase::new("Look along an axis", "Regarder le long d'un axe"),
+        Phrase::new("Look along an axis", "Regarder le long d’un axe"),
         &[
             Item::Command(Command::Front),
             Item::Command(Command::Back),
@@ -125,7 +125,7 @@ const VIEW: &[Item] = &[
         ],
     ),
     Item::Submenu(
-        Phrase::new("Text and controls", "Taille de l'interface"),
+        Phrase::new("Text and controls", "Taille de l’interface"),
         &[
             Item::Command(Command::LargerInterface),
             Item::Command(Command::SmallerInterface),

@@ -14,7 +14,7 @@ pub use keys::{key_name, pressed, shortcut_text};
 pub use menus::{Item, MENUS, MenuLayout};
 pub use table::Command;
 
-use crate::Phrase;
+use crate::{EditKind, Language, Phrase};
 use eframe::egui::KeyboardShortcut;
 
 /// A menu of the window, and with it the group in which a command is listed.
@@ -84,10 +84,10 @@ pub struct CommandContext {
     pub has_document: bool,
     /// The scene came from a file.
     pub has_file: bool,
-    /// There is a step to undo.
-    pub can_undo: bool,
-    /// There is a step to do again.
-    pub can_redo: bool,
+    /// The step that would be undone.
+    pub undo: Option<EditKind>,
+    /// The step that would be done again.
+    pub redo: Option<EditKind>,
     /// The scene differs from what was loaded or saved.
     pub is_changed: bool,
     /// Something is selected.
@@ -114,8 +114,8 @@ impl CommandContext {
             Needs::Nothing => true,
             Needs::Document => self.has_document,
             Needs::File => self.has_file,
-            Needs::Undo => self.can_undo,
-            Needs::Redo => self.can_redo,
+            Needs::Undo => self.undo.is_some(),
+            Needs::Redo => self.redo.is_some(),
             Needs::Changes => self.is_changed,
             Needs::Selection => self.has_selection,
             Needs::Hideable => self.can_hide,
@@ -142,6 +142,16 @@ impl Command {
     /// What it is called, in a menu or on a button.
     pub const fn name(self) -> Phrase {
         self.entry().name
+    }
+
+    /// What it is called now: "Undo" says what.
+    pub fn label(self, context: &CommandContext, language: Language) -> String {
+        match self {
+            Self::Undo => context.undo.map(|kind| kind.undo_text(language)),
+            Self::Redo => context.redo.map(|kind| kind.redo_text(language)),
+            _ => None,
+        }
+        .unwrap_or_else(|| language.say(self.name()).to_owned())
     }
 
     /// What it does, in a line without a full stop.

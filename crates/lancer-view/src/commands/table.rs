@@ -81,11 +81,11 @@ commands! {
             ("Save scene as…", "Enregistrer la scène sous…")
             ("Write the whole scene into a new file", "Écrire toute la scène dans un nouveau fichier");
         SavePicture Act Document [ctrl(Key::E)]
-            ("Save picture…", "Enregistrer l'image…")
-            ("Write the picture that is shown as PNG or EXR", "Écrire l'image affichée en PNG ou EXR");
+            ("Save picture…", "Enregistrer l’image…")
+            ("Write the picture that is shown as PNG or EXR", "Écrire l’image affichée en PNG ou EXR");
         CopyPicture Act Document [ctrl_shift(Key::C), ctrl(Key::C)]
-            ("Copy picture", "Copier l'image")
-            ("Put the picture that is shown on the clipboard", "Mettre l'image affichée dans le presse-papiers");
+            ("Copy picture", "Copier l’image")
+            ("Put the picture that is shown on the clipboard", "Mettre l’image affichée dans le presse-papiers");
         Quit Act Nothing [ctrl(Key::Q)]
             ("Quit", "Quitter")
             ("Close the window", "Fermer la fenêtre");
@@ -98,15 +98,15 @@ commands! {
             ("Redo", "Rétablir")
             ("Make the change again that was taken back", "Refaire la modification annulée");
         Revert Act Changes []
-            ("Revert all changes", "Revenir à l'original")
+            ("Revert all changes", "Revenir à l’original")
             ("Take back all that was changed since the scene was opened or saved",
-             "Revenir sur tout ce qui a changé depuis l'ouverture ou l'enregistrement");
+             "Revenir sur tout ce qui a changé depuis l’ouverture ou l’enregistrement");
         Deselect Act Selection [ctrl(Key::D)]
             ("Deselect", "Désélectionner")
             ("Select nothing", "Ne rien sélectionner");
         HideSelection Act Hideable [key(Key::H)]
             ("Hide selection", "Masquer la sélection")
-            ("Leave what is selected out of the picture", "Retirer de l'image ce qui est sélectionné");
+            ("Leave what is selected out of the picture", "Retirer de l’image ce qui est sélectionné");
         ShowAll Act Hidden [alt(Key::H)]
             ("Show all", "Tout afficher")
             ("Bring back everything that is hidden", "Faire réapparaître tout ce qui est masqué");
@@ -129,22 +129,22 @@ commands! {
             ("Go back to where the scene's camera stands", "Revenir à la caméra de la scène");
         Front Act Document [key(Key::Num1)]
             ("Front", "Face")
-            ("Look along the Z axis, from the front", "Regarder le long de l'axe Z, de face");
+            ("Look along the Z axis, from the front", "Regarder le long de l’axe Z, de face");
         Back Act Document [ctrl(Key::Num1)]
             ("Back", "Arrière")
-            ("Look along the Z axis, from behind", "Regarder le long de l'axe Z, de derrière");
+            ("Look along the Z axis, from behind", "Regarder le long de l’axe Z, de derrière");
         Right Act Document [key(Key::Num3)]
             ("Right", "Droite")
-            ("Look along the X axis, from the right", "Regarder le long de l'axe X, de droite");
+            ("Look along the X axis, from the right", "Regarder le long de l’axe X, de droite");
         Left Act Document [ctrl(Key::Num3)]
             ("Left", "Gauche")
-            ("Look along the X axis, from the left", "Regarder le long de l'axe X, de gauche");
+            ("Look along the X axis, from the left", "Regarder le long de l’axe X, de gauche");
         Top Act Document [key(Key::Num7)]
             ("Top", "Dessus")
-            ("Look along the Y axis, from above", "Regarder le long de l'axe Y, d'en haut");
+            ("Look along the Y axis, from above", "Regarder le long de l’axe Y, d’en haut");
         Bottom Act Document [ctrl(Key::Num7)]
             ("Bottom", "Dessous")
-            ("Look along the Y axis, from below", "Regarder le long de l'axe Y, d'en bas");
+            ("Look along the Y axis, from below", "Regarder le long de l’axe Y, d’en bas");
         ShowPicture Choice Document [alt(Key::Num1)]
             ("Picture", "Image")
             ("Show the scene as it is lit", "Montrer la scène éclairée");
@@ -153,13 +153,13 @@ commands! {
             ("Show how far away surfaces are", "Montrer la distance des surfaces");
         ShowNormals Choice Document [alt(Key::Num3)]
             ("Normals", "Normales")
-            ("Show which way surfaces face", "Montrer l'orientation des surfaces");
+            ("Show which way surfaces face", "Montrer l’orientation des surfaces");
         ShowObjects Choice Document [alt(Key::Num4)]
             ("Objects", "Objets")
             ("Show each object in a colour of its own", "Montrer chaque objet dans une couleur qui lui est propre");
         ShowOcclusion Choice Document [alt(Key::Num5)]
             ("Ambient occlusion", "Occultation ambiante")
-            ("Show ambient occlusion alone, c_a of the model", "Montrer l'occultation ambiante seule, c_a du modèle");
+            ("Show ambient occlusion alone, c_a of the model", "Montrer l’occultation ambiante seule, c_a du modèle");
         Grid Toggle Document [key(Key::G)]
             ("Grid", "Grille")
             ("Draw a grid on the ground", "Dessiner une grille au sol");
@@ -168,29 +168,29 @@ commands! {
             ("Draw the axes of the world", "Dessiner les axes du monde");
         Lights Toggle Document [key(Key::L)]
             ("Lights", "Lumières")
-            ("Mark where the lights are", "Marquer l'emplacement des lumières");
+            ("Mark where the lights are", "Marquer l’emplacement des lumières");
         Bounds Toggle Document [key(Key::B)]
             ("Bounding boxes", "Boîtes englobantes")
             ("Draw the box around each object", "Dessiner la boîte autour de chaque objet");
         Interest Toggle Document [key(Key::P)]
-            ("Point of interest", "Point d'intérêt")
+            ("Point of interest", "Point d’intérêt")
             ("Mark the point that the view turns about", "Marquer le point autour duquel la vue tourne");
         Tree Toggle Document [key(Key::T)]
-            ("Tree boxes", "Boîtes de l'arbre")
+            ("Tree boxes", "Boîtes de l’arbre")
             ("Draw the boxes of one level of the tree that finds hits",
-             "Dessiner les boîtes d'un niveau de l'arbre qui trouve les intersections");
+             "Dessiner les boîtes d’un niveau de l’arbre qui trouve les intersections");
         TreeDeeper Act Document [key(Key::Period)]
-            ("Next level of the tree", "Niveau suivant de l'arbre")
-            ("Draw the boxes of the next level of the tree", "Dessiner les boîtes du niveau suivant de l'arbre");
+            ("Next level of the tree", "Niveau suivant de l’arbre")
+            ("Draw the boxes of the next level of the tree", "Dessiner les boîtes du niveau suivant de l’arbre");
         TreeShallower Act Document [key(Key::Comma)]
-            ("Previous level of the tree", "Niveau précédent de l'arbre")
+            ("Previous level of the tree", "Niveau précédent de l’arbre")
             ("Draw the boxes of the level above", "Dessiner les boîtes du niveau précédent");
         ScenePanel Toggle Nothing [key(Key::F2)]
             ("Scene panel", "Panneau de la scène")
-            ("Show or hide the tree of the scene", "Afficher ou masquer l'arbre de la scène");
+            ("Show or hide the tree of the scene", "Afficher ou masquer l’arbre de la scène");
         SettingsPanel Toggle Nothing [key(Key::F3)]
             ("Settings panel", "Panneau des réglages")
-            ("Show or hide the settings of the picture", "Afficher ou masquer les réglages de l'image");
+            ("Show or hide the settings of the picture", "Afficher ou masquer les réglages de l’image");
         RendersPanel Toggle Nothing [key(Key::F4)]
             ("Renders", "Rendus")
             ("Show or hide the renders that are kept", "Afficher ou masquer les rendus conservés");
@@ -199,7 +199,7 @@ commands! {
             ("Say in the view what each mouse button does", "Rappeler dans la vue le rôle des boutons de la souris");
         FullScreen Toggle Nothing [key(Key::F11)]
             ("Full screen", "Plein écran")
-            ("Let the window fill the screen", "Étendre la fenêtre à tout l'écran");
+            ("Let the window fill the screen", "Étendre la fenêtre à tout l’écran");
         ThemeSystem Choice Nothing []
             ("Theme of the system", "Thème du système")
             ("Light or dark as the system is", "Clair ou sombre comme le système");
@@ -224,39 +224,39 @@ commands! {
              "Glisser à gauche déplace, au milieu avance ou recule, à droite tourne");
         MouseOrbit Choice Nothing []
             ("Mouse: left drag turns", "Souris : tourner à gauche")
-            ("Left drag turns about the point of interest, right drag moves, the wheel goes nearer or farther",
-             "Glisser à gauche tourne autour du point d'intérêt, à droite déplace, la molette avance ou recule");
+            ("Left drag turns about the point of interest, middle drag moves, right drag goes nearer or farther",
+             "Glisser à gauche tourne autour du point d’intérêt, au milieu déplace, à droite avance ou recule");
         MouseTrackpad Choice Nothing []
             ("Trackpad", "Pavé tactile")
             ("Two fingers and modifier keys in place of mouse buttons",
              "Deux doigts et touches de modification au lieu des boutons de la souris");
         LargerInterface Act Nothing [ctrl(Key::Plus), ctrl(Key::Equals)]
-            ("Larger text and controls", "Agrandir l'interface")
-            ("Make everything but the picture larger", "Agrandir tout sauf l'image");
+            ("Larger text and controls", "Agrandir l’interface")
+            ("Make everything but the picture larger", "Agrandir tout sauf l’image");
         SmallerInterface Act Nothing [ctrl(Key::Minus)]
-            ("Smaller text and controls", "Réduire l'interface")
-            ("Make everything but the picture smaller", "Réduire tout sauf l'image");
+            ("Smaller text and controls", "Réduire l’interface")
+            ("Make everything but the picture smaller", "Réduire tout sauf l’image");
         NormalInterface Act Nothing [ctrl(Key::Num0)]
-            ("Normal text and controls", "Taille normale de l'interface")
+            ("Normal text and controls", "Taille normale de l’interface")
             ("Give text and controls the size that the system asks for",
-             "Donner à l'interface la taille demandée par le système");
+             "Donner à l’interface la taille demandée par le système");
     }
     Render {
         Render Act Document [key(Key::F12), ctrl(Key::Enter)]
-            ("Render", "Calculer l'image")
-            ("Make the picture at the chosen size, and keep it", "Calculer l'image à la taille choisie, et la garder");
+            ("Render", "Calculer l’image")
+            ("Make the picture at the chosen size, and keep it", "Calculer l’image à la taille choisie, et la garder");
         Cancel Act Work [key(Key::Escape)]
             ("Cancel", "Interrompre")
-            ("Stop rendering, or opening a scene", "Arrêter le rendu, ou l'ouverture d'une scène");
+            ("Stop rendering, or opening a scene", "Arrêter le rendu, ou l’ouverture d’une scène");
         ShowView Act Render [key(Key::V)]
             ("Back to the view", "Revenir à la vue")
-            ("Show the scene to move in, in place of a render", "Montrer la scène où se déplacer, au lieu d'un rendu");
+            ("Show the scene to move in, in place of a render", "Montrer la scène où se déplacer, au lieu d’un rendu");
         PreviousRender Act Renders [key(Key::PageUp)]
             ("Previous render", "Rendu précédent")
-            ("Show the render before this one", "Montrer le rendu d'avant");
+            ("Show the render before this one", "Montrer le rendu d’avant");
         NextRender Act Renders [key(Key::PageDown)]
             ("Next render", "Rendu suivant")
-            ("Show the render after this one", "Montrer le rendu d'après");
+            ("Show the render after this one", "Montrer le rendu d’après");
         Compare Toggle SeveralRenders [key(Key::C)]
             ("Compare", "Comparer")
             ("Show two renders side by side, with a line to slide between them",
@@ -272,7 +272,7 @@ commands! {
             ("Show the pixels of the render smaller", "Réduire les pixels du rendu");
         ActualSize Act Render [key(Key::Z)]
             ("Actual size", "Taille réelle")
-            ("Show one pixel of the render on one of the screen", "Montrer un pixel du rendu sur un pixel de l'écran");
+            ("Show one pixel of the render on one of the screen", "Montrer un pixel du rendu sur un pixel de l’écran");
         Fit Act Render [key(Key::Num0)]
             ("Fit into the window", "Ajuster à la fenêtre")
             ("Show all of the render", "Montrer le rendu en entier");

@@ -1,7 +1,7 @@
 //! The table as a whole, and keys on their way to commands.
 
 use super::*;
-use crate::Language;
+use crate::{EditKind, Language};
 use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,8 +10,8 @@ fn everything() -> CommandContext {
     CommandContext {
         has_document: true,
         has_file: true,
-        can_undo: true,
-        can_redo: true,
+        undo: Some(EditKind::Material),
+        redo: Some(EditKind::Settings),
         is_changed: true,
         has_selection: true,
         can_hide: true,
@@ -185,4 +185,11 @@ fn shortcuts_are_written_as_on_the_keys_of_each_language() {
     assert_eq!(shortcut_text(redo, Language::English), "Ctrl+Shift+Z");
     assert_eq!(shortcut_text(redo, Language::French), "Ctrl+Maj+Z");
     assert_eq!(shortcut_text(&Command::Cancel.shortcuts()[0], Language::French), "Échap");
+}
+
+#[test]
+fn undo_says_what_it_would_undo() {
+    assert_eq!(Command::Undo.label(&everything(), Language::English), "Undo Material");
+    let nothing = CommandContext::default();
+    assert_eq!(Command::Undo.label(&nothing, Language::French), "Annuler la modification");
 }

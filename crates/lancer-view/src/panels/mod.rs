@@ -4,7 +4,11 @@
 //! nothing itself but its own state, as what is typed or unfolded.
 
 mod fields;
+pub mod file_picker;
 pub mod inspector;
+pub mod menu_bar;
+pub mod messages;
+pub mod palette;
 pub mod scene_tree;
 mod scenes;
 pub mod settings;

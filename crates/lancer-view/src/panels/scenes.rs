@@ -32,7 +32,7 @@ pub(super) fn about(source: &Source) -> Phrase {
 pub(super) fn summary(scene: &dyn BuiltinScene) -> Phrase {
     let french = match scene.name() {
         "whitted" => {
-            "Une boule de verre creuse devant une boule miroir sur un damier, d'après l'image de Whitted (1980)"
+            "Une boule de verre creuse devant une boule miroir sur un damier, d’après l’image de Whitted (1980)"
         }
         "primitives" => "Toutes les formes, étirées, cisaillées, en miroir et imbriquées",
         "highlights" => "La brillance croît vers la droite, du plastique devant au métal derrière",
@@ -40,12 +40,12 @@ pub(super) fn summary(scene: &dyn BuiltinScene) -> Phrase {
             "Les ombres nettes de trois lumières colorées se croisent sous une colonnade et un treillis"
         }
         "mirrors" => "Deux miroirs face à face et leur couloir de reflets, une boule et un bol miroirs",
-        "glass" => "Un verre d'eau, une boule, un bloc à bulles et un prisme à réflexion totale",
+        "glass" => "Un verre d’eau, une boule, un bloc à bulles et un prisme à réflexion totale",
         "occlusion" => {
-            "De l'argile blanche sans lampe : un escalier tournant, un treillis et des boules dans des coins"
+            "De l’argile blanche sans lampe : un escalier tournant, un treillis et des boules dans des coins"
         }
         "supersampling" => {
-            "Une roue aux rayons fins sur des carreaux jusqu'à l'horizon : à calculer avec 1 échantillon, puis avec 4"
+            "Une roue aux rayons fins sur des carreaux jusqu’à l’horizon : à calculer avec 1 échantillon, puis avec 4"
         }
         "teapot" => "La théière de Newell, faite de ses carreaux de Bézier, vernissée, sur une table polie",
         "sphereflake" => {
@@ -53,7 +53,7 @@ pub(super) fn summary(scene: &dyn BuiltinScene) -> Phrase {
         }
         "mirror-room" => "Une pièce éclairée entre deux miroirs, avec du verre sur la table",
         "ten-thousand" => {
-            "Une vallée d'automne de dix mille arbres de quatre sortes, en sous-arbres partagés"
+            "Une vallée d’automne de dix mille arbres de quatre sortes, en sous-arbres partagés"
         }
         _ => scene.summary(),
     };

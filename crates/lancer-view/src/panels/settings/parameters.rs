@@ -14,18 +14,18 @@ pub(super) const SCENE: Parameter = parameter(
     ("Scene", "Scène"),
     (
         "A built-in scene, or one of the files opened last",
-        "Une scène intégrée, ou l'un des derniers fichiers ouverts",
+        "Une scène intégrée, ou l’un des derniers fichiers ouverts",
     ),
 );
 
 pub(super) const CAMERA: Parameter = parameter(
     ("Camera", "Caméra"),
-    ("Look through one of the scene's cameras", "Regarder par l'une des caméras de la scène"),
+    ("Look through one of the scene's cameras", "Regarder par l’une des caméras de la scène"),
 );
 
 pub(super) const WIDTH: Parameter = parameter(
     ("Width", "Largeur"),
-    ("Pixels in a row of the render: 1 to 65,535", "Pixels d'une ligne du rendu : de 1 à 65 535"),
+    ("Pixels in a row of the render: 1 to 65,535", "Pixels d’une ligne du rendu : de 1 à 65 535"),
 );
 
 pub(super) const HEIGHT: Parameter = parameter(
@@ -45,7 +45,7 @@ pub(super) const EXPOSURE: Parameter = parameter(
     ("Exposure", "Exposition"),
     (
         "In stops: the picture is multiplied by 2 to this power, and then cut to [0, 1].",
-        "En diaphragmes : l'image est multipliée par 2 à cette puissance, puis ramenée à [0, 1].",
+        "En diaphragmes : l’image est multipliée par 2 à cette puissance, puis ramenée à [0, 1].",
     ),
 );
 
@@ -93,7 +93,7 @@ pub(super) const BACKGROUND: Parameter = parameter(
     ("Background", "Fond"),
     (
         "The light of a ray that meets nothing; it is seen in mirrors and glass too.",
-        "La lumière d'un rayon qui ne rencontre rien ; elle se voit aussi dans les miroirs et le verre.",
+        "La lumière d’un rayon qui ne rencontre rien ; elle se voit aussi dans les miroirs et le verre.",
     ),
 );
 
@@ -125,7 +125,7 @@ pub(super) const ACCELERATOR: Parameter = parameter(
     ("Search", "Recherche"),
     (
         "What finds the surface that a ray meets. The picture is the same, byte for byte, with any of them.",
-        "Ce qui trouve la surface que rencontre un rayon. L'image est la même, à l'octet près, avec chacune.",
+        "Ce qui trouve la surface que rencontre un rayon. L’image est la même, à l’octet près, avec chacune.",
     ),
 );
 
@@ -133,22 +133,22 @@ pub(super) const LEAF: Parameter = parameter(
     ("Triangles a leaf", "Par feuille"),
     (
         "A node of the k-d tree with this many triangles or fewer is not divided any further.",
-        "Un nœud de l'arbre k-d qui a ce nombre de triangles, ou moins, n'est plus divisé.",
+        "Un nœud de l’arbre k-d qui a ce nombre de triangles, ou moins, n’est plus divisé.",
     ),
 );
 
 pub(super) const TREE_DEPTH: Parameter = parameter(
-    ("Tree depth", "Prof. de l'arbre"),
+    ("Tree depth", "Prof. de l’arbre"),
     (
         "At this depth, no node of the k-d tree is divided any further; the root has depth 0.",
-        "À cette profondeur, aucun nœud de l'arbre k-d n'est plus divisé ; la racine a la profondeur 0.",
+        "À cette profondeur, aucun nœud de l’arbre k-d n’est plus divisé ; la racine a la profondeur 0.",
     ),
 );
 
 pub(super) const THREADS: Parameter = parameter(
-    ("Threads", "Fils d'exécution"),
+    ("Threads", "Fils d’exécution"),
     (
         "How many threads render; automatic is one for each core. The picture is the same with any number.",
-        "Combien de fils calculent ; automatique : un par cœur. L'image est la même quel qu'en soit le nombre.",
+        "Combien de fils calculent ; automatique : un par cœur. L’image est la même quel qu’en soit le nombre.",
     ),
 );

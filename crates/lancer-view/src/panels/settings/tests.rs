@@ -212,10 +212,10 @@ fn the_bounds_of_the_k_d_tree_are_there_when_it_is_chosen() {
 #[test]
 fn threads_are_one_a_core_or_a_number() {
     let mut window = window(Language::French);
-    toggle(&mut window, "Fils d'exécution, automatique");
-    set_number(&mut window, "Fils d'exécution", "6");
+    toggle(&mut window, "Fils d’exécution, automatique");
+    set_number(&mut window, "Fils d’exécution", "6");
     assert_eq!(window.state().threads, 6);
-    toggle(&mut window, "Fils d'exécution, automatique");
+    toggle(&mut window, "Fils d’exécution, automatique");
     assert_eq!(window.state().threads, 0);
 }
 
@@ -249,7 +249,7 @@ fn the_cameras_of_the_scene_are_listed_with_the_main_one() {
 #[test]
 fn the_large_button_renders_and_cancels() {
     for (language, render, cancel) in
-        [(Language::English, "Render", "Cancel"), (Language::French, "Calculer l'image", "Interrompre")]
+        [(Language::English, "Render", "Cancel"), (Language::French, "Calculer l’image", "Interrompre")]
     {
         let mut window = window(language);
         window.get_by_label(render).click();
