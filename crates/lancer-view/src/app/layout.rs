@@ -29,12 +29,12 @@ impl App {
             Panel::bottom("renders").exact_size(78.0).show(ui, |ui| self.strip(ui, actions));
         }
         if self.preferences.panels.tree {
-            Panel::left("scene").default_size(280.0).size_range(200.0..=460.0).show(ui, |ui| {
+            Panel::left("scene").default_size(270.0).size_range(220.0..=460.0).show(ui, |ui| {
                 self.scene_panel(ui, actions);
             });
         }
         if self.preferences.panels.parameters {
-            Panel::right("settings").default_size(330.0).size_range(300.0..=460.0).show(ui, |ui| {
+            Panel::right("settings").default_size(310.0).size_range(290.0..=460.0).show(ui, |ui| {
                 self.settings_panel(ui, &context, actions);
             });
         }

@@ -14,6 +14,8 @@ mod saving;
 mod shelf;
 mod status_bar;
 mod strip;
+#[cfg(test)]
+mod tests;
 mod viewport;
 
 pub use action::{Action, Selection};
