@@ -10,3 +10,4 @@ pub mod messages;
 pub mod palette;
 mod scenes;
 pub mod settings;
+pub mod shortcuts;

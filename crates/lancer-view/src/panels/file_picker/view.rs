@@ -6,7 +6,7 @@ use super::state::{FilePicker, Outcome};
 use crate::{Action, Language, Phrase};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Align, Button, Context, Id, Key, Layout, Modal, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
+    Align, Button, Context, Id, Key, Layout, Modal, Modifiers, Rect, RichText, ScrollArea, TextEdit, Ui, vec2,
 };
 
 const WIDTH: f32 = 680.0;
@@ -27,13 +27,14 @@ impl FilePicker {
     pub fn show(&mut self, ctx: &Context, language: Language, actions: &mut Vec<Action>) -> bool {
         let mut outcome = self.poll();
         let mut is_closed = false;
-        let modal = Modal::new(Id::new("file picker")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("file picker")).show(ctx, |ui| {
             ui.set_width(WIDTH.min(ctx.content_rect().width() - 32.0));
             ui.heading(language.say(self.purpose.title()));
             ui.add_space(4.0);
             let moved = self.take_keys(ui);
             self.directory_line(ui, language);
-            ui.horizontal_top(|ui| {
+            let size = vec2(ui.available_width(), LIST_HEIGHT);
+            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Min), |ui| {
                 self.places_list(ui, language);
                 ui.separator();
                 self.entries_list(ui, moved, language);
@@ -45,15 +46,15 @@ impl FilePicker {
                 is_closed = self.buttons(ui, language);
             }
         });
-        match outcome {
-            Outcome::Picked(path) => {
-                actions.push(self.action(path));
-                false
-            }
-            // Escape answers the question first.
-            Outcome::Pending if modal.should_close() && self.to_replace.take().is_some() => true,
-            Outcome::Pending => !is_closed && !modal.should_close(),
+        if let Outcome::Picked(path) = outcome {
+            actions.push(self.action(path));
+            return false;
         }
+        if modal.should_close() {
+            // Escape answers the question first.
+            return self.to_replace.take().is_some();
+        }
+        !is_closed
     }
 
     /// Takes the keys that move, before the text field has them. Returns whether the selection moved.
@@ -117,21 +118,35 @@ impl FilePicker {
 
     fn entries_list(&mut self, ui: &mut Ui, moved: bool, language: Language) {
         const EMPTY: Phrase = Phrase::new("No such files here", "Aucun fichier de ce type ici");
-        const CUT: Phrase = Phrase::new("There are more files than are listed", "Il y a plus de fichiers que listés");
+        const CUT: Phrase =
+            Phrase::new("There are more files than are listed", "Il y a plus de fichiers que listés");
         let (mut clicked, mut opened) = (None, false);
         ui.vertical(|ui| {
             let shown = self.shown();
             let row_height = ui.spacing().interact_size.y;
-            let area = ScrollArea::vertical().id_salt("entries").max_height(LIST_HEIGHT).min_scrolled_height(LIST_HEIGHT);
+            let area = ScrollArea::vertical()
+                .id_salt("entries")
+                .max_height(LIST_HEIGHT)
+                .min_scrolled_height(LIST_HEIGHT);
             area.auto_shrink(false).show_rows(ui, row_height, shown.len().max(1), |ui, rows| {
                 if shown.is_empty() && !self.is_waiting() {
                     ui.weak(language.say(EMPTY));
                 }
+                if let Some(selected) = self.selected.filter(|_| moved) {
+                    // It may be one of the rows that are not drawn.
+                    let below =
+                        (selected as f32 - rows.start as f32) * (row_height + ui.spacing().item_spacing.y);
+                    let corner = ui.max_rect().left_top() + vec2(0.0, below);
+                    ui.scroll_to_rect(Rect::from_min_size(corner, vec2(1.0, row_height)), None);
+                }
                 for (i, entry) in shown.iter().enumerate().skip(rows.start).take(rows.len()) {
                     let is_selected = self.selected == Some(i);
-                    let (icon, note) =
-                        if entry.is_directory { ("📁", String::new()) } else { ("📄", size_text(entry.bytes, language)) };
-                    let button = Button::selectable(is_selected, format!("{icon} {}", entry.name))
+                    let (shown, note) = if entry.is_directory {
+                        (RichText::new(format!("{}/", entry.name)).strong(), String::new())
+                    } else {
+                        (RichText::new(&entry.name), size_text(entry.bytes, language))
+                    };
+                    let button = Button::selectable(is_selected, shown)
                         .right_text(RichText::new(note).weak())
                         .truncate()
                         .min_size(vec2(ui.available_width(), row_height));
@@ -150,7 +165,6 @@ impl FilePicker {
                 ui.weak(language.say(CUT));
             }
         });
-        let _ = moved;
         if let Some(i) = clicked {
             self.select(i);
         }
@@ -166,19 +180,20 @@ impl FilePicker {
             .desired_width(f32::INFINITY)
             .margin(vec2(8.0, 6.0));
         let field = ui.add(field).accessible_name(language.say(PATH_HINT));
-        if ui.memory(|memory| memory.focused().is_none()) {
-            field.request_focus();
-        }
         if field.changed() {
             self.edited();
         }
         let enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if ui.memory(|memory| memory.focused().is_none()) {
+            field.request_focus();
+        }
         if let Some(fault) = &self.fault {
             ui.colored_label(ui.visuals().error_fg_color, fault_text(fault, language));
         }
         let mut is_closed = false;
         ui.horizontal(|ui| {
-            let extensions = self.purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>();
+            let extensions =
+                self.purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>();
             let tip = extensions.join(" ");
             let all = ui.checkbox(&mut self.shows_all, language.say(ALL_FILES)).on_hover_text(tip);
             let hidden = ui.checkbox(&mut self.shows_hidden, language.say(HIDDEN_FILES));
@@ -223,7 +238,9 @@ impl FilePicker {
 fn fault_text(fault: &Fault, language: Language) -> String {
     let (phrase, detail) = match fault {
         Fault::NoName => {
-            return language.say(Phrase::new("Choose or type a name.", "Choisissez ou tapez un nom.")).to_owned();
+            return language
+                .say(Phrase::new("Choose or type a name.", "Choisissez ou tapez un nom."))
+                .to_owned();
         }
         Fault::NoSuchFile(path) => {
             (Phrase::new("There is no file", "Il n’y a pas de fichier"), short_path(path))
@@ -239,9 +256,10 @@ fn fault_text(fault: &Fault, language: Language) -> String {
             Phrase::new("The name must end in", "Le nom doit finir par"),
             purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(", "),
         ),
-        Fault::Other(path, error) => {
-            (Phrase::new("This cannot be read:", "Lecture impossible :"), format!("{} ({error})", short_path(path)))
-        }
+        Fault::Other(path, error) => (
+            Phrase::new("This cannot be read:", "Lecture impossible :"),
+            format!("{} ({error})", short_path(path)),
+        ),
     };
     format!("{} {detail}", language.say(phrase))
 }
@@ -294,7 +312,7 @@ mod tests {
         let places = vec![Place { name: None, path: directory.join("more") }];
         let picker = FilePicker::new(purpose, directory, name, places, || {});
         let state = State { picker: Some(picker), language, actions: Vec::new() };
-        let mut window = Harness::builder().with_size([900.0, 640.0]).build_ui_state(
+        let mut window = crate::theme::test_window([900.0, 640.0]).with_step_dt(1.0 / 60.0).build_ui_state(
             |ui, state: &mut State| {
                 if let Some(picker) = &mut state.picker
                     && !picker.show(ui.ctx(), state.language, &mut state.actions)
@@ -382,13 +400,17 @@ mod tests {
         settle(&mut window);
         window.get_by_label("Le remplacer").click();
         settle(&mut window);
-        assert!(matches!(&window.state().actions[..], [Action::SavePicture(path)] if path.ends_with("shot.png")));
+        assert!(
+            matches!(&window.state().actions[..], [Action::SavePicture(path)] if path.ends_with("shot.png"))
+        );
     }
 
     #[test]
     fn what_is_wrong_is_said_in_place_and_in_the_language() {
         let directory = directory();
-        for (language, expected) in [(Language::English, "There is no file"), (Language::French, "Il n’y a pas")] {
+        for (language, expected) in
+            [(Language::English, "There is no file"), (Language::French, "Il n’y a pas")]
+        {
             let mut window = window(Purpose::Open, directory.path(), "none.ply", language);
             window.get_by_label(language.say(PATH_HINT)).type_text("none.ply");
             window.run();
@@ -401,9 +423,12 @@ mod tests {
     #[test]
     fn escape_and_the_button_close_it() {
         let directory = directory();
-        for close in [|window: &Harness<State>| window.key_press(Key::Escape), |window: &Harness<State>| {
-            window.get_by_label("Close").click();
-        }] {
+        for close in [
+            |window: &Harness<State>| window.key_press(Key::Escape),
+            |window: &Harness<State>| {
+                window.get_by_label("Close").click();
+            },
+        ] {
             let mut window = window(Purpose::Open, directory.path(), "", Language::English);
             close(&window);
             settle(&mut window);
