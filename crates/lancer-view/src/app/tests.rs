@@ -6,7 +6,7 @@ use crate::preferences::PreferencesFile;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use lancer_core::render::{Control, render};
 use lancer_core::scene::Settings;
 use lancer_core::world::World;
@@ -163,7 +163,8 @@ fn right_drag_turns_about_the_point_of_interest_and_middle_drag_goes_nearer() {
 fn keys_look_along_axes_frame_everything_and_go_home() {
     let mut window = window("primitives");
     let home = app(&window).navigator.camera();
-    for view in [Command::Front, Command::Right, Command::Top, Command::Back, Command::Left, Command::Bottom] {
+    for view in [Command::Front, Command::Right, Command::Top, Command::Back, Command::Left, Command::Bottom]
+    {
         command(&mut window, view);
         let camera = app(&window).navigator.camera();
         let along = (camera.eye - app(&window).navigator.point_of_interest()).normalize().abs();
@@ -180,8 +181,12 @@ fn a_click_selects_what_it_hits_and_escape_does_not_lose_it() {
     let at = middle(&window);
     window.event(Event::PointerMoved(at));
     for pressed in [true, false] {
-        let event =
-            Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
+        let event = Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
         window.event(event);
         window.run_steps(1);
     }
