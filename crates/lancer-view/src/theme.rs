@@ -2,12 +2,19 @@
 
 use eframe::egui::style::WidgetVisuals;
 use eframe::egui::{
-    Color32, Context, CornerRadius, Margin, Shadow, Stroke, Style, TextStyle, Theme as Shade,
-    ThemePreference, Visuals, vec2,
+    Color32, Context, CornerRadius, FontDefinitions, FontFamily, Margin, Shadow, Stroke, Style, TextStyle,
+    Theme as Shade, ThemePreference, Visuals, vec2,
 };
 
 /// Gives a window both looks; it then follows the system until [`choose`] says otherwise.
 pub fn install(ctx: &Context) {
+    // The monospaced font has the arrows and the signs of mathematics that the other one lacks.
+    let mut fonts = FontDefinitions::default();
+    let fallbacks = fonts.families.get(&FontFamily::Monospace).cloned().unwrap_or_default();
+    let family = fonts.families.entry(FontFamily::Proportional).or_default();
+    let missing = fallbacks.into_iter().filter(|font| !family.contains(font)).collect::<Vec<_>>();
+    family.extend(missing);
+    ctx.set_fonts(fonts);
     for shade in [Shade::Dark, Shade::Light] {
         ctx.style_mut_of(shade, |style| set(style, &Palette::of(shade)));
     }
@@ -95,6 +102,8 @@ fn set(style: &mut Style, palette: &Palette) {
     spacing.menu_margin = Margin::same(6);
     spacing.window_margin = Margin::same(14);
     spacing.tooltip_width = 320.0;
+    // Lists that drop down are no taller than this: all built-in scenes and the recent files fit.
+    spacing.default_area_size = vec2(600.0, 640.0);
     for (text_style, size) in [(TextStyle::Body, 13.5), (TextStyle::Button, 13.5), (TextStyle::Small, 11.0)] {
         if let Some(font) = style.text_styles.get_mut(&text_style) {
             font.size = size;
@@ -143,6 +152,12 @@ fn visuals(palette: &Palette) -> Visuals {
     visuals.popup_shadow = shadow(12, 60);
     visuals.window_shadow = shadow(24, 90);
     visuals
+}
+
+/// A window for tests that looks as the real one does; it panics at a glyph that no font has.
+#[cfg(test)]
+pub(crate) fn test_window<S>(size: [f32; 2]) -> egui_kittest::HarnessBuilder<S> {
+    egui_kittest::Harness::builder().with_size(size).with_context_setup(install)
 }
 
 #[cfg(test)]
@@ -201,10 +216,11 @@ mod tests {
         install(&ctx);
         for (theme, dark) in [(crate::Theme::Dark, true), (crate::Theme::Light, false)] {
             choose(&ctx, theme);
-            let _ = ctx.run_ui(eframe::egui::RawInput::default(), |ui| {
+            let mut output = ctx.run_ui(eframe::egui::RawInput::default(), |ui| {
                 assert_eq!(ui.visuals().dark_mode, dark);
                 assert_eq!(ui.visuals().panel_fill, Palette::of(ui.theme()).ground);
             });
+            output.textures_delta.clear();
         }
     }
 }

@@ -22,6 +22,7 @@ mod patch;
 mod report;
 mod schema;
 mod syntax;
+mod write;
 
 pub use apply::apply_overrides;
 pub use assets::{Assets, Model};
@@ -30,6 +31,7 @@ pub use origins::Origins;
 pub use overrides::{Override, OverrideError};
 pub use patch::patch;
 pub use schema::json_schema;
+pub use write::write_whole;
 
 use crate::Loaded;
 use crate::diagnostics::LoadError;

@@ -29,12 +29,12 @@ impl App {
             Panel::bottom("renders").exact_size(78.0).show(ui, |ui| self.strip(ui, actions));
         }
         if self.preferences.panels.tree {
-            Panel::left("scene").default_size(230.0).size_range(160.0..=420.0).show(ui, |ui| {
+            Panel::left("scene").default_size(290.0).size_range(220.0..=460.0).show(ui, |ui| {
                 self.scene_panel(ui, actions);
             });
         }
         if self.preferences.panels.parameters {
-            Panel::right("settings").default_size(290.0).size_range(240.0..=420.0).show(ui, |ui| {
+            Panel::right("settings").default_size(310.0).size_range(290.0..=460.0).show(ui, |ui| {
                 self.settings_panel(ui, &context, actions);
             });
         }
@@ -48,6 +48,7 @@ impl App {
             }
             let pixels = ui.available_size_before_wrap() * ui.ctx().pixels_per_point();
             self.screen_size = DVec2::new(f64::from(pixels.x), f64::from(pixels.y));
+            self.view_rect = ui.available_rect_before_wrap();
             self.viewport(ui, actions);
         });
         self.dialogs(ui, &context, actions);
@@ -69,6 +70,8 @@ impl App {
 
     fn scene_panel(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let language = self.language();
+        // Neither a short tree nor a narrow inspector makes the panel smaller.
+        ui.set_min_width(ui.available_width());
         let Some(document) = &self.document else { return };
         let selection = self.selection;
         Panel::bottom("inspector").resizable(true).default_size(330.0).show(ui, |ui| {
@@ -112,7 +115,7 @@ impl App {
             self.about_shown = about::show(&ctx, language);
         }
         self.ask(&ctx);
-        self.messages.show(&ctx, language);
+        self.messages.show(&ctx, self.view_rect, language);
     }
 
     /// What the commands' state depends on.

@@ -99,7 +99,7 @@ pub(crate) fn save_picture(path: &Path, image: &Image, language: Language) -> Sa
 
 /// Writes a scene as a file that stands alone.
 pub(crate) fn save_scene_as(path: &Path, scene: &Scene, language: Language) -> Saved {
-    match Err::<(), String>(format!("not yet {}", path.display())) {
+    match scene_file::write_whole(scene, path) {
         Ok(()) => Saved::Done(format!("{} {}", language.say(SAVED), path.display())),
         Err(error) => Saved::Failed(error.to_string()),
     }

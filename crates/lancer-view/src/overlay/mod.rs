@@ -32,7 +32,7 @@ use surfaces::Surfaces;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverlayOptions {
-    /// The plane y = 0 in squares, whose size follows from the scene's.
+    /// The plane y = 0 in squares, a power of ten wide, as fits the distance one looks from.
     pub grid: bool,
     /// X, Y and Z through the origin.
     pub axes: bool,
@@ -102,13 +102,13 @@ pub fn draw(input: &OverlayInput) -> OverlayImage {
     let mut pen = Pen { canvas, lens, surfaces, scale };
     let palette = Palette::of_theme(input.dark);
 
-    if let Some(grid) = Grid::for_scene(world.bounds(), camera.eye, input.interest) {
-        if options.grid {
-            grid.draw(&mut pen, palette);
-        }
-        if options.axes {
-            grid.draw_axes(&mut pen, palette);
-        }
+    if options.grid
+        && let Some(grid) = Grid::for_view(camera.eye, input.interest)
+    {
+        grid.draw(&mut pen, palette);
+    }
+    if options.axes {
+        grid::draw_axes(&mut pen, palette);
     }
     if let Some(level) = options.tree_level {
         boxes::draw_tree(&mut pen, palette, world, selected, level);

@@ -2,7 +2,7 @@
 
 use crate::{Language, Phrase};
 use eframe::egui::{
-    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, Ui, Vec2, emath::Numeric, vec2,
+    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, RichText, Ui, Vec2, emath::Numeric, vec2,
 };
 use lancer_core::Rgb;
 use std::ops::RangeInclusive;
@@ -58,10 +58,15 @@ impl Rows<'_> {
         let language = self.language;
         let name = language.say(parameter.name);
         self.row(parameter, value, own, |ui, _, value| {
+            // Three numbers in a narrow place: what is around them gives way.
+            let spacing = ui.spacing_mut();
+            (spacing.item_spacing.x, spacing.button_padding.x) = (3.0, 2.0);
+            spacing.interact_size.x = 24.0;
             let mut shown = value.to_array().map(|channel| channel as f32);
             let button = ui.color_edit_button_rgb(&mut shown).accessible_name(name);
             if button.changed() {
-                *value = shown.map(f64::from).into();
+                // To the sixth decimal: what a picker can tell apart, without the tail of the narrower float.
+                *value = shown.map(|channel| (f64::from(channel) * 1e6).round() / 1e6).into();
             }
             let spacing = ui.spacing().item_spacing.x;
             let width = (ui.available_width() - 2.0 * spacing) / 3.0;
@@ -145,7 +150,9 @@ impl Rows<'_> {
         let height = self.ui.spacing().interact_size.y;
         self.ui.horizontal(|ui| {
             let spacing = ui.spacing().item_spacing.x;
-            let width = ui.available_width() - RESET_WIDTH - 2.0 * spacing;
+            // A row that is too long for its panel makes none of the others longer.
+            let room = ui.available_width().min(ui.clip_rect().right() - ui.cursor().left());
+            let width = room - RESET_WIDTH - 2.0 * spacing;
             let label = cell(ui, vec2(width * (1.0 - CONTROL_SHARE), height), |ui| {
                 ui.add(Label::new(name).truncate()).on_hover_text(meaning)
             });
@@ -155,7 +162,7 @@ impl Rows<'_> {
             cell(ui, vec2(RESET_WIDTH, height), |ui| {
                 if *value != own
                     && ui
-                        .add(Button::new("⟲").frame(false))
+                        .add(Button::new(RichText::new("↺").size(16.0)).frame(false))
                         .accessible_name(format!("{} {name}", self.language.say(RESET)))
                         .on_hover_text(self.language.say(TO_WHAT))
                         .clicked()
@@ -189,9 +196,17 @@ pub(super) fn number<N: Numeric>(
     width: f32,
 ) -> Response {
     let height = ui.spacing().interact_size.y;
+    // A field that is left as it was writes what it shows; the decimals that it does not show must not be lost by it.
+    let shown = parse_number(&number_text(value.to_f64(), language));
+    let drag = DragValue::from_get_set(move |new| {
+        if let Some(new) = new.filter(|new| Some(*new) != shown) {
+            *value = N::from_f64(new);
+        }
+        value.to_f64()
+    });
+    let drag = if N::INTEGRAL { drag.max_decimals(0) } else { drag };
     ui.add(
-        DragValue::new(value)
-            .range(range)
+        drag.range(range)
             .clamp_existing_to_range(false)
             .speed(speed)
             .update_while_editing(false)

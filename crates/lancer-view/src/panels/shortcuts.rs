@@ -9,7 +9,7 @@ use eframe::egui::{Align, Context, Grid, Id, Key, Layout, Modal, RichText, Scrol
 const TITLE: Phrase = Phrase::new("Keyboard and mouse", "Clavier et souris");
 const CLOSE: Phrase = Phrase::new("Close", "Fermer");
 const WIDTH: f32 = 820.0;
-const HEIGHT: f32 = 480.0;
+const HEIGHT: f32 = 640.0;
 
 /// Draws the list over everything. Returns whether it stays open.
 #[must_use]

@@ -100,40 +100,54 @@ impl Builder<'_> {
         let span = self.offsets.get(span.start)?..self.offsets.get(span.end)?;
         match event {
             Event::Scalar(text, style, anchor, tag) => {
-                let is_missing =
-                    text.is_empty() && *style == ScalarStyle::Plain && *anchor == 0 && tag.is_none();
+                let is_bare = *anchor == 0 && tag.is_none();
+                let is_missing = text.is_empty() && *style == ScalarStyle::Plain && is_bare;
                 let kind = if is_missing { Kind::Missing } else { Kind::Scalar };
-                let span = if is_missing { span.start..span.start } else { self.trimmed(span)? };
+                let span = self.span_of_scalar(*style, is_bare, span)?;
                 self.put(Layout { span, anchor: *anchor, kind });
             }
-            Event::Alias(anchor) => {
-                let span = self.trimmed(span)?;
-                self.put(Layout { span, anchor: 0, kind: Kind::Alias(*anchor) });
-            }
-            Event::SequenceStart(anchor, _) => self.begin(&span, *anchor, false)?,
-            Event::MappingStart(anchor, _) => self.begin(&span, *anchor, true)?,
-            Event::SequenceEnd | Event::MappingEnd => self.end(&span)?,
+            Event::Alias(anchor) => self.put(Layout { span, anchor: 0, kind: Kind::Alias(*anchor) }),
+            Event::SequenceStart(anchor, _) => self.begin(span.start, *anchor, false),
+            Event::MappingStart(anchor, _) => self.begin(span.start, *anchor, true),
+            Event::SequenceEnd | Event::MappingEnd => self.end(span.start)?,
             _ => {}
         }
         Some(())
     }
 
-    fn trimmed(&self, span: Range<usize>) -> Option<Range<usize>> {
-        let length = self.text.get(span.clone())?.trim_end().len();
-        Some(span.start..span.start + length)
+    /// The span without the blanks and comments that the parser counts in.
+    fn span_of_scalar(&self, style: ScalarStyle, is_bare: bool, span: Range<usize>) -> Option<Range<usize>> {
+        let trimmed = span.start + self.text.get(span.clone())?.trim_end().len();
+        Some(match style {
+            ScalarStyle::Plain => span.start..trimmed,
+            ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => {
+                span.start..after_quotes(self.text, after_properties(self.text, span.start))?
+            }
+            ScalarStyle::Literal | ScalarStyle::Folded if is_bare => self.header_of_lines()?..trimmed,
+            ScalarStyle::Literal | ScalarStyle::Folded => span.start..trimmed,
+        })
     }
 
-    fn begin(&mut self, span: &Range<usize>, anchor: usize, is_mapping: bool) -> Option<()> {
-        let bracket = if is_mapping { '{' } else { '[' };
-        let style = if self.text.get(span.clone())?.ends_with(bracket) { Style::Flow } else { Style::Block };
-        self.open.push(Open { start: span.start, anchor, style, is_mapping, children: Vec::new() });
-        Some(())
+    /// Where the `|` or `>` of a text in lines stands; the parser tells only where its first line does. `None` in
+    /// lists, none of which is of texts in a scene file.
+    fn header_of_lines(&self) -> Option<usize> {
+        let open = self.open.last().filter(|open| open.is_mapping)?;
+        let colon = after_colon(self.text, open.children.last()?.span.end)?;
+        Some(after_blanks(self.text, colon))
     }
 
-    fn end(&mut self, span: &Range<usize>) -> Option<()> {
+    fn begin(&mut self, start: usize, anchor: usize, is_mapping: bool) {
+        let content = &self.text[after_properties(self.text, start)..];
+        let style = if content.starts_with(['{', '[']) { Style::Flow } else { Style::Block };
+        self.open.push(Open { start, anchor, style, is_mapping, children: Vec::new() });
+    }
+
+    fn end(&mut self, parsed_end: usize) -> Option<()> {
         let Open { start, anchor, style, is_mapping, children } = self.open.pop()?;
-        let last = children.last().map_or(start, |child| child.span.end);
-        let end = if style == Style::Flow { span.end } else { last };
+        let end = match style {
+            Style::Block => children.last().map_or(start, |child| child.span.end),
+            Style::Flow => self.after_bracket(parsed_end)?,
+        };
         let kind = if is_mapping {
             let mut entries = Vec::with_capacity(children.len() / 2);
             let mut children = children.into_iter();
@@ -146,6 +160,13 @@ impl Builder<'_> {
         };
         self.put(Layout { span: start..end, anchor, kind });
         Some(())
+    }
+
+    /// The place after a closing bracket, of which the parser tells where it is, or the comma before it.
+    fn after_bracket(&self, place: usize) -> Option<usize> {
+        let comma = usize::from(self.text.get(place..)?.starts_with(','));
+        let bracket = after_blanks(self.text, place + comma);
+        self.text[bracket..].starts_with(['}', ']']).then_some(bracket + 1)
     }
 
     /// Puts a finished node into the innermost open one.
@@ -165,7 +186,41 @@ impl Builder<'_> {
 
 /// The place after the colon that follows a key. `None` where none stands there.
 pub(super) fn after_colon(text: &str, key_end: usize) -> Option<usize> {
-    let rest = text.get(key_end..)?;
-    let trimmed = rest.trim_start();
-    trimmed.starts_with(':').then(|| key_end + rest.len() - trimmed.len() + 1)
+    let colon = after_blanks(text, key_end);
+    text[colon..].starts_with(':').then_some(colon + 1)
+}
+
+/// The place after blanks, ends of lines and comments.
+fn after_blanks(text: &str, place: usize) -> usize {
+    let mut rest = text[place..].trim_start();
+    while let Some(comment) = rest.strip_prefix('#') {
+        rest = comment.trim_start_matches(|c| c != '\n').trim_start();
+    }
+    text.len() - rest.len()
+}
+
+/// The place after a node's anchor and tag, where its content begins.
+fn after_properties(text: &str, start: usize) -> usize {
+    let mut place = start;
+    while text[place..].starts_with(['&', '!']) {
+        let property = text[place..].find(char::is_whitespace);
+        place = property.map_or(text.len(), |length| after_blanks(text, place + length));
+    }
+    place
+}
+
+/// The place after the closing quote of a text that begins with a quote here.
+fn after_quotes(text: &str, start: usize) -> Option<usize> {
+    let quote = text[start..].chars().next()?;
+    let mut rest = &text[start + 1..];
+    loop {
+        let stop = rest.find([quote, '\\'])?;
+        let taken = match (quote, &rest[stop..]) {
+            ('"', escaped) if escaped.starts_with('\\') => 1 + escaped[1..].chars().next()?.len_utf8(),
+            ('\'', quotes) if quotes.starts_with("''") => 2,
+            ('\'', other) if other.starts_with('\\') => 1,
+            _ => return Some(text.len() - rest.len() + stop + 1),
+        };
+        rest = &rest[stop + taken..];
+    }
 }

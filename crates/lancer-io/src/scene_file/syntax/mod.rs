@@ -11,7 +11,7 @@ mod write;
 pub(crate) use parse::{Parsed, parse};
 pub(crate) use scalar::{Scalar, same_scalar};
 pub(crate) use text::{RawOffsets, decode};
-pub(crate) use write::{Language, flow, flow_key};
+pub(crate) use write::{Language, block, flow, flow_key};
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -101,6 +101,15 @@ impl Node {
     /// The value of a key, even where it was taken out.
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
         self.entries().iter().find(|entry| &*entry.key == key).map(|entry| &*entry.value)
+    }
+
+    /// Whether it is a list or a mapping with nothing in it.
+    pub(crate) fn is_empty(&self) -> bool {
+        match &self.value {
+            Value::Scalar(_) => false,
+            Value::Sequence(items) => items.is_empty(),
+            Value::Mapping(entries) => entries.is_empty(),
+        }
     }
 
     /// Whether something directly in this node was taken out, so that a fault of the node may be its echo.

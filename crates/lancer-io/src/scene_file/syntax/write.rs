@@ -28,6 +28,69 @@ pub(crate) fn flow_key(key: &str, language: Language) -> String {
     out
 }
 
+/// A mapping as YAML for people: its entries by lines, and whatever fits on one line on one.
+pub(crate) fn block(root: &Node) -> String {
+    let mut out = String::new();
+    write_block(root, 0, &mut out);
+    out.push('\n');
+    out
+}
+
+/// The width that lines of [`block`] keep to where they can: a narrow window's. Untuned.
+const WIDTH: usize = 100;
+
+/// Writes a value that begins at this column, as will its further lines.
+fn write_block(node: &Node, column: usize, out: &mut String) {
+    let next_line = |out: &mut String, column| {
+        out.push('\n');
+        out.extend(std::iter::repeat_n(' ', column));
+    };
+    match &node.value {
+        Value::Mapping(entries) => {
+            for (index, Entry { key, value, .. }) in entries.iter().enumerate() {
+                if index > 0 {
+                    next_line(out, column);
+                }
+                let key = flow_key(key, Language::Yaml);
+                out.push_str(&key);
+                out.push(':');
+                match on_one_line(value, WIDTH.saturating_sub(column + key.len() + 2)) {
+                    Some(line) => out.extend([" ", &line]),
+                    None => {
+                        next_line(out, column + 2);
+                        write_block(value, column + 2, out);
+                    }
+                }
+            }
+        }
+        Value::Sequence(items) => {
+            for (index, item) in items.iter().enumerate() {
+                if index > 0 {
+                    next_line(out, column);
+                }
+                out.push_str("- ");
+                match on_one_line(item, WIDTH.saturating_sub(column + 2)) {
+                    Some(line) => out.push_str(&line),
+                    None => write_block(item, column + 2, out),
+                }
+            }
+        }
+        Value::Scalar(scalar) => write_scalar(scalar, Language::Yaml, out),
+    }
+}
+
+/// A value in flow style, if it is no wider, or if nothing in it could be parted.
+fn on_one_line(node: &Node, width: usize) -> Option<String> {
+    let is_scalar = |node: &Node| matches!(node.value, Value::Scalar(_));
+    let is_flat = match &node.value {
+        Value::Scalar(_) => true,
+        Value::Sequence(items) => items.iter().all(|item| is_scalar(item)),
+        Value::Mapping(entries) => entries.is_empty(),
+    };
+    let line = flow(node, Language::Yaml);
+    (is_flat || line.chars().count() <= width).then_some(line)
+}
+
 /// Recurses as deep as the tree is, which [`Limits::nesting`](crate::limits::Limits::nesting) bounds.
 fn write_value(node: &Node, language: Language, out: &mut String) {
     match &node.value {
@@ -157,6 +220,16 @@ mod tests {
             let json = written(Scalar::text(text), Language::Json);
             assert_eq!(serde_json::from_str::<String>(&json).unwrap(), text);
         }
+    }
+
+    #[test]
+    fn what_fits_on_a_line_is_on_one() {
+        let long = format!("[{}]", ["123456"; 20].join(", "));
+        let text = format!(
+            "a: 1\nb: [{{c: 1}}, {{c: 2}}]\nd:\n  - matrix: {long}\n  - e:\n      f: {long}\n      g: []\nh: {{}}\n"
+        );
+        let parsed = parse(&text, Origin::File, &Limits::default()).ok().and_then(|parsed| parsed.root);
+        assert_eq!(block(&parsed.unwrap()), text);
     }
 
     proptest! {

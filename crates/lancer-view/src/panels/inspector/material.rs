@@ -7,8 +7,8 @@ use eframe::egui::Ui;
 use lancer_core::Rgb;
 use lancer_core::scene::{Material, MaterialId, Texture};
 
-/// Draws the material, and says what is changed about it.
-pub(super) fn show(view: &mut View, ui: &mut Ui, id: MaterialId, split: &mut Split) {
+/// Draws the material, and says what is changed about it. Its name is left out below that of a node.
+pub(super) fn show(view: &mut View, ui: &mut Ui, id: MaterialId, split: &mut Split, with_name: bool) {
     let scene = view.document.scene();
     let (Some(material), Some(saved)) =
         (scene.materials().get(id.index()), view.document.saved().materials().get(id.index()))
@@ -17,7 +17,9 @@ pub(super) fn show(view: &mut View, ui: &mut Ui, id: MaterialId, split: &mut Spl
     };
     let mut edited = material.clone();
     let rows = &mut Rows { ui, language: view.language };
-    rows.text(&NAME, &mut edited.name, saved.name.clone());
+    if with_name {
+        rows.text(&NAME, &mut edited.name, saved.name.clone());
+    }
     color(rows, &mut edited.color, &saved.color);
     for (parameter, field) in COEFFICIENTS {
         let own = *field(&mut saved.clone());

@@ -60,7 +60,7 @@ pub fn show(
                     Selection::None => view.scene(ui),
                     Selection::Node(id) => node::show(&mut view, ui, id, state),
                     Selection::Light(index) => light::show(&mut view, ui, index, &mut state.split),
-                    Selection::Material(id) => material::show(&mut view, ui, id, &mut state.split),
+                    Selection::Material(id) => material::show(&mut view, ui, id, &mut state.split, true),
                 }
             });
             if let Some(reason) = state.refused {

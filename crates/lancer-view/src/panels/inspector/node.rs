@@ -49,7 +49,7 @@ pub(super) fn show(view: &mut View, ui: &mut Ui, id: NodeId, state: &mut Inspect
                 view.wishes.push(Wish::Once(Action::Select(Selection::Material(id))));
             }
         });
-        ui.push_id("material", |ui| material::show(view, ui, id, &mut state.split));
+        ui.push_id("material", |ui| material::show(view, ui, id, &mut state.split, false));
     }
 }
 

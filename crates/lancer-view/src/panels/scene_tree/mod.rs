@@ -8,10 +8,11 @@ mod rows;
 mod tests;
 
 use crate::{Action, Document, Edit, Language, Phrase, Selection};
+use eframe::egui::epaint::QuadraticBezierShape;
 use eframe::egui::text::{LayoutJob, TextFormat, TextWrapping};
 use eframe::egui::{
-    Align2, Context, EventFilter, FontId, Id, Key as Button, Modifiers, Rect, Response, Role, ScrollArea,
-    Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    Color32, Context, EventFilter, FontId, Id, Key as Button, Modifiers, Painter, Pos2, Rect, Response, Role,
+    ScrollArea, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 use lancer_core::scene::{NodeId, Scene};
 use rows::{Item, Key, Row, Section};
@@ -79,16 +80,18 @@ pub fn show(
     }
     let count = state.rows.len();
     let output = area.show_rows(ui, height, count, |ui, range| {
-        let mut drawn = Drawn { scene, selection, language, base, asked: None };
+        let mut drawn = Drawn { scene, selection, language, base, asked: None, focused: None };
         // Without a cursor the first row in sight is where the keyboard comes in.
         let entrance = state.cursor_index().filter(|index| range.contains(index)).unwrap_or(range.start);
         for index in range {
             drawn.row(ui, state.rows[index], index == entrance, actions);
         }
-        drawn.asked
+        (drawn.asked, drawn.focused)
     });
-    state.in_sight = (output.state.offset().y, output.inner_rect.height());
-    match output.inner {
+    state.in_sight = (output.state.clamped_offset().y, output.inner_rect.height());
+    let (asked, focused) = output.inner;
+    state.cursor = focused.or(state.cursor);
+    match asked {
         Some(Asked::Go(key)) => state.go(ui.ctx(), base, key, actions),
         Some(Asked::Fold(key)) => state.fold(key),
         None => {}
@@ -256,6 +259,8 @@ struct Drawn<'a> {
     language: Language,
     base: Id,
     asked: Option<Asked>,
+    /// The row that the keyboard has come to, as by the tabulator.
+    focused: Option<Key>,
 }
 
 impl Drawn<'_> {
@@ -266,6 +271,9 @@ impl Drawn<'_> {
         // The tabulator stops once, at the cursor; from there on the arrows go.
         let sense = if takes_focus { Sense::click() } else { Sense::CLICK };
         let response = ui.interact(rect, id, sense);
+        if response.has_focus() {
+            self.focused = Some(row.key);
+        }
         let name = row.item.name(self.scene, self.language);
         let is_selected = row.item.selection() == Some(self.selection);
         self.describe(ui, &response, row, &name, is_selected);
@@ -404,12 +412,7 @@ impl Drawn<'_> {
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, ui.is_enabled(), is_visible, &text));
         let hovered = response.hovered();
         let color = if hovered { ui.visuals().strong_text_color() } else { ui.visuals().weak_text_color() };
-        let font = TextStyle::Body.resolve(ui.style());
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "👁", font, color);
-        if !is_visible {
-            let half = vec2(6.0, -5.0);
-            ui.painter().line_segment([rect.center() - half, rect.center() + half], Stroke::new(1.5, color));
-        }
+        paint_eye(ui.painter(), rect.center(), is_visible, color);
         if response.clicked() {
             toggle_hidden(self.scene, node, actions);
         }
@@ -418,6 +421,20 @@ impl Drawn<'_> {
             false => Phrase::new("Show (H)", "Afficher (H)"),
         };
         response.on_hover_text(self.language.say(hint));
+    }
+}
+
+/// Two lids and a pupil; shut by a stroke. The font has no eye.
+fn paint_eye(painter: &Painter, center: Pos2, is_open: bool, color: Color32) {
+    let stroke = Stroke::new(1.2, color);
+    let [left, right] = [-6.0, 6.0].map(|x| center + vec2(x, 0.0));
+    for height in [-7.0, 7.0] {
+        let lid = [left, center + vec2(0.0, height), right];
+        painter.add(QuadraticBezierShape::from_points_stroke(lid, false, Color32::TRANSPARENT, stroke));
+    }
+    painter.circle_filled(center, 1.8, color);
+    if !is_open {
+        painter.line_segment([center + vec2(-5.0, 4.5), center + vec2(5.0, -4.5)], stroke);
     }
 }
 

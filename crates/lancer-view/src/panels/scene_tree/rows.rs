@@ -95,15 +95,17 @@ impl Item {
         let (name, otherwise) = match self {
             Self::Section(section) => ("", language.say(section.name()).to_owned()),
             Self::Node(id) => {
-                let node = scene.node(id);
-                (&*node.name, language.say(kind_of(node)).to_owned())
+                let node = scene.nodes().get(id.index());
+                let kind = node.map_or("", |node| language.say(kind_of(node)));
+                (node.map_or("", |node| &node.name), kind.to_owned())
             }
             Self::Light(index) => {
                 let name = scene.lights.get(index).map_or("", |light| &light.name);
                 (name, numbered(Phrase::new("Light", "Lumière"), index))
             }
             Self::Material(id) => {
-                (&*scene.material(id).name, numbered(Phrase::new("Material", "Matériau"), id.index()))
+                let name = scene.materials().get(id.index()).map_or("", |material| &material.name);
+                (name, numbered(Phrase::new("Material", "Matériau"), id.index()))
             }
             Self::Camera(None) => {
                 ("", language.say(Phrase::new("Main camera", "Caméra principale")).to_owned())
