@@ -1,5 +1,6 @@
 //! A person before the window, for the length of a test.
 
+use crate::controls::Controls;
 use lancer_xvfb::{Area, Button, Display, Failure, FileDrag, Picture, Program, missing_tools};
 use std::fs;
 use std::io::Write;
@@ -9,6 +10,24 @@ use tempfile::TempDir;
 
 /// The display, all of which the window takes.
 const SIZE: (u16, u16) = (1280, 800);
+
+/// Something of everything, and soon drawn.
+pub(crate) const BALLS: &str = "
+format: 1
+camera: {eye: [0, 2, 8], target: [0, 1, 0], fov: 40}
+ambient: 0.2
+background: '#87ceeb'
+lights: [{position: [4, 6, 4], intensity: 200}]
+materials:
+  floor: {color: [0.8, 0.7, 0.6]}
+  mirror: {diffuse: 0.1, reflect: 0.8}
+  glass: {ambient: 0.1, diffuse: 0.1, specular: 0.5, transmit: 0.8, reflect: 0.1}
+objects:
+  - {shape: plane, material: floor}
+  - {shape: sphere, material: mirror, transform: [{translate: [-1.2, 1, 0]}]}
+  - {shape: sphere, material: glass, transform: [{translate: [1.2, 1, 0.5]}]}
+render: {width: 160, height: 120, depth: 3, ao: {samples: 4}}
+";
 
 /// A part of the viewport that no panel, note or mark covers.
 pub(crate) const VIEW: Area = Area { x: 330, y: 250, width: 560, height: 300 };
@@ -155,6 +174,12 @@ impl Sitting<'_> {
         self.display.release(button)
     }
 
+    /// The controls of this window, while it shows a scene of the directory.
+    pub(crate) fn controls(&self, scene: &str) -> Result<Controls, Failure> {
+        let size = [f32::from(SIZE.0), f32::from(SIZE.1)];
+        Controls::of(self.path(scene), size, self.path("controls"))
+    }
+
     /// Clicks.
     pub(crate) fn click(&self, at: (i32, i32)) -> Result<(), Failure> {
         self.display.click(at, Button::Left)
@@ -167,9 +192,9 @@ impl Sitting<'_> {
         self.wait_for_change(&before)
     }
 
-    /// Drags a file over the window, as from a file manager.
-    pub(crate) fn drag_file(&self, file: &Path) -> Result<FileDrag, Failure> {
-        FileDrag::over(self.display, &self.program, &[file], (600, 400))
+    /// Drags a file of the directory over the window, as from a file manager.
+    pub(crate) fn drag_file(&self, name: &str) -> Result<FileDrag, Failure> {
+        FileDrag::over(self.display, &self.program, &[&self.path(name)], (600, 400))
     }
 
     /// Closes the window by the cross in its corner.

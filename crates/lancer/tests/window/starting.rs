@@ -1,6 +1,6 @@
 //! How it begins and ends.
 
-use crate::sitting::{shows_a_scene, sit};
+use crate::sitting::{BALLS, shows_a_scene, sit};
 
 #[test]
 fn without_arguments_the_default_scene_is_shown_and_ctrl_q_quits() {
@@ -38,9 +38,9 @@ fn a_scene_is_chosen_by_its_name() {
 
 #[test]
 fn themes_and_languages_change_the_panels_and_no_pixel_of_the_scene() {
-    sit("themes", &["whitted"], &[], |sitting| {
+    sit("themes", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
         let before = sitting.see("english")?;
-        for command in ["Light theme", "Fran", "Th\u{e8}me sombre", "English"] {
+        for command in ["Light theme", "Francais", "sombre", "English"] {
             sitting.command(command)?;
             assert!(sitting.see(&command.to_lowercase().replace(' ', "-"))? == before, "{command}");
         }
