@@ -60,7 +60,8 @@ impl Worlds {
         let opened = self.opened.as_ref().filter(usable);
         let use_of =
             |known: &Compiled| (traces_alike(&known.scene, scene), shared_meshes(scene, &known.scene));
-        let from_opened = opened.map(use_of) > last.map(use_of);
+        let of_no_use = (false, 0);
+        let from_opened = opened.map_or(of_no_use, use_of) > last.map_or(of_no_use, use_of);
         (if from_opened { opened } else { last }, from_opened)
     }
 }
