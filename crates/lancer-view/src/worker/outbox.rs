@@ -63,7 +63,7 @@ impl Outbox {
 
 /// Adds an event to those that wait: a frame takes the place of an older one, a progress is joined with an older
 /// one of the same render.
-fn join(events: &mut Vec<Event>, mut event: Event) {
+pub(super) fn join(events: &mut Vec<Event>, mut event: Event) {
     match &mut event {
         Event::Frame(_) => events.retain(|waiting| !matches!(waiting, Event::Frame(_))),
         Event::RenderProgress(id, progress) => {

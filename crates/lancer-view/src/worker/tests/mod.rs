@@ -74,12 +74,13 @@ impl Watched {
         Self { worker: Worker::start(move || sender.send(()).unwrap_or(())), wakes }
     }
 
-    /// All events up to one that `is_last`, which is the last of those returned.
+    /// All events up to one that `is_last`, which is the last of those returned. They are joined as those that wait
+    /// are, or a test would fill the memory with frames.
     fn until(&self, is_last: impl Fn(&Event) -> bool) -> Vec<Event> {
         let deadline = Instant::now() + HANGS;
         let mut events = Vec::new();
         loop {
-            events.extend(self.worker.poll());
+            self.worker.poll().into_iter().for_each(|event| outbox::join(&mut events, event));
             if let Some(last) = events.iter().position(&is_last) {
                 assert_eq!(last + 1, events.len(), "{:?} came after the last", &events[last + 1..]);
                 return events;
