@@ -37,7 +37,7 @@ const MOVING_DIVISORS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 16];
 const COARSEST_WITH_AO: u32 = 4;
 
 /// The sizes of images at rest, before the last one.
-const RESTING_DIVISORS: [u32; 4] = [8, 4, 2, 1];
+const RESTING_DIVISORS: [u32; 5] = [16, 8, 4, 2, 1];
 
 /// An image that is followed by a better one sooner than this is not worth making, in seconds.
 const SOON: f64 = 0.080;
@@ -156,12 +156,12 @@ mod tests {
     #[test]
     fn a_picture_that_comes_at_once_has_one_pass_and_a_slow_one_has_all() {
         assert_eq!(divisors(&resting(&full(1, 0), &cost(0.02), None)), [1]);
-        assert_eq!(divisors(&resting(&full(4, 0), &cost(60.0), None)), [8, 4, 2, 1, 1]);
+        assert_eq!(divisors(&resting(&full(4, 0), &cost(60.0), None)), [16, 8, 4, 2, 1, 1]);
     }
 
     #[test]
     fn an_image_at_one_sample_is_not_made_twice() {
-        assert_eq!(divisors(&resting(&full(1, 0), &cost(60.0), None)), [8, 4, 2, 1]);
+        assert_eq!(divisors(&resting(&full(1, 0), &cost(60.0), None)), [16, 8, 4, 2, 1]);
         assert_eq!(divisors(&resting(&full(1, COARSE_AO), &cost(60.0), Some(2))), [1]);
     }
 

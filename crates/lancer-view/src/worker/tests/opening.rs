@@ -39,7 +39,7 @@ struct Slow {
 
 impl Slow {
     /// The scene, what opens its gate, and what lives as long as the scene that is built.
-    fn new() -> (Source, Sender<()>, std::sync::Weak<Mesh>) {
+    fn source() -> (Source, Sender<()>, std::sync::Weak<Mesh>) {
         let (open, gate) = channel();
         let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let data = MeshData { positions, indices: vec![[0, 1, 2]], ..MeshData::default() };
@@ -130,7 +130,7 @@ fn a_scene_that_panics_becomes_a_message_and_the_next_is_opened() {
     watched.worker.open(Source::Builtin(&Faulty), LoadOptions::default());
     match watched.last_of(is_end) {
         Event::OpenFailed { error, .. } => {
-            assert!(error.to_string().contains("the scene is faulty"), "{error}")
+            assert!(error.to_string().contains("the scene is faulty"), "{error}");
         }
         other => panic!("{other:?}"),
     }
@@ -142,7 +142,7 @@ fn a_scene_that_panics_becomes_a_message_and_the_next_is_opened() {
 #[test]
 fn opening_is_cancelled_while_a_file_is_still_read_and_what_it_brings_is_dropped() {
     let watched = Watched::start();
-    let (slow, gate, alive) = Slow::new();
+    let (slow, gate, alive) = Slow::source();
     watched.worker.open(slow.clone(), LoadOptions::default());
     assert!(watched.worker.is_busy());
     watched.worker.cancel_open();
@@ -157,7 +157,7 @@ fn opening_is_cancelled_while_a_file_is_still_read_and_what_it_brings_is_dropped
 #[test]
 fn the_scene_that_was_opened_last_wins() {
     let watched = Watched::start();
-    let (slow, gate, alive) = Slow::new();
+    let (slow, gate, alive) = Slow::source();
     watched.worker.open(slow, LoadOptions::default());
     watched.worker.open(builtin("whitted"), LoadOptions::default());
     match watched.last_of(is_end) {
@@ -172,7 +172,7 @@ fn the_scene_that_was_opened_last_wins() {
 #[test]
 fn the_view_goes_on_while_a_scene_is_opened() {
     let watched = Watched::start();
-    let (slow, gate, _) = Slow::new();
+    let (slow, gate, _) = Slow::source();
     watched.worker.open(slow, LoadOptions::default());
     watched.worker.view(request(&scene()));
     watched.final_frame();

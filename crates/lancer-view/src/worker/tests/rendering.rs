@@ -95,7 +95,7 @@ fn what_cannot_be_rendered_is_told() {
     watched.worker.render(request);
     match watched.last_of(is_end) {
         Event::RenderFailed { error: RenderFault::Message(message), .. } => {
-            assert!(message.contains("width"))
+            assert!(message.contains("width"));
         }
         other => panic!("{other:?}"),
     }

@@ -50,8 +50,8 @@ fn at_rest_the_images_only_grow_and_the_last_pass_only_gains_tiles() {
     let mut scene = scene();
     scene.settings = Settings { width: 400, height: 300, samples: 3, ..scene.settings };
     worker.view(request(&scene));
-    let mut frames = Vec::new();
-    while !frames.last().is_some_and(|frame: &Box<Frame>| frame.is_final) {
+    let mut frames = Vec::<Box<Frame>>::new();
+    while !frames.last().is_some_and(|frame| frame.is_final) {
         wakes.recv_timeout(HANGS).unwrap();
         for event in worker.poll() {
             match event {
