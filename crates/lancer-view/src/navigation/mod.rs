@@ -141,14 +141,7 @@ impl Navigator {
 
     /// Two fingers scroll by some pixels: the same as dragging by that much, but for [`Gesture::Dolly`], which
     /// holds what is under the cursor as the wheel does.
-    pub fn scroll(
-        &mut self,
-        gesture: Gesture,
-        by: DVec2,
-        at: DVec2,
-        viewport: DVec2,
-        under: Option<DVec3>,
-    ) {
+    pub fn scroll(&mut self, gesture: Gesture, by: DVec2, at: DVec2, viewport: DVec2, under: Option<DVec3>) {
         if gesture == Gesture::Dolly {
             self.wheel(by.y / PIXELS_A_STEP, at, viewport, under);
         } else {

@@ -61,7 +61,8 @@ impl Rows<'_> {
             let mut shown = value.to_array().map(|channel| channel as f32);
             let button = ui.color_edit_button_rgb(&mut shown).accessible_name(name);
             if button.changed() {
-                *value = shown.map(f64::from).into();
+                // To the sixth decimal: what a picker can tell apart, without the tail of the narrower float.
+                *value = shown.map(|channel| (f64::from(channel) * 1e6).round() / 1e6).into();
             }
             let spacing = ui.spacing().item_spacing.x;
             let width = (ui.available_width() - 2.0 * spacing) / 3.0;
@@ -180,7 +181,7 @@ fn cell<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// A number to type or to drag. What is typed counts once it is finished, so that 1920 is not rendered at 1, 19 and
 /// 192 first.
-fn number<N: Numeric>(
+pub(super) fn number<N: Numeric>(
     ui: &mut Ui,
     language: Language,
     value: &mut N,
@@ -189,9 +190,17 @@ fn number<N: Numeric>(
     width: f32,
 ) -> Response {
     let height = ui.spacing().interact_size.y;
+    // A field that is left as it was writes what it shows; the decimals that it does not show must not be lost by it.
+    let shown = parse_number(&number_text(value.to_f64(), language));
+    let drag = DragValue::from_get_set(move |new| {
+        if let Some(new) = new.filter(|new| Some(*new) != shown) {
+            *value = N::from_f64(new);
+        }
+        value.to_f64()
+    });
+    let drag = if N::INTEGRAL { drag.max_decimals(0) } else { drag };
     ui.add(
-        DragValue::new(value)
-            .range(range)
+        drag.range(range)
             .clamp_existing_to_range(false)
             .speed(speed)
             .update_while_editing(false)
