@@ -29,16 +29,16 @@ impl App {
             Panel::bottom("renders").exact_size(78.0).show(ui, |ui| self.strip(ui, actions));
         }
         if self.preferences.panels.tree {
-            Panel::left("scene").default_size(280.0).size_range(200.0..=460.0).show(ui, |ui| {
+            Panel::left("scene").default_size(290.0).size_range(220.0..=460.0).show(ui, |ui| {
                 self.scene_panel(ui, actions);
             });
         }
         if self.preferences.panels.parameters {
-            Panel::right("settings").default_size(330.0).size_range(300.0..=460.0).show(ui, |ui| {
+            Panel::right("settings").default_size(310.0).size_range(290.0..=460.0).show(ui, |ui| {
                 self.settings_panel(ui, &context, actions);
             });
         }
-        let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             self.fault_banner(ui, actions);
             if self.preferences.panels.hints && self.shelf.showing == Showing::Live {
                 Panel::bottom("hint").frame(Frame::side_top_panel(ui.style())).show(ui, |ui| {
@@ -48,12 +48,10 @@ impl App {
             }
             let pixels = ui.available_size_before_wrap() * ui.ctx().pixels_per_point();
             self.screen_size = DVec2::new(f64::from(pixels.x), f64::from(pixels.y));
-            let view = ui.available_rect_before_wrap();
+            self.view_rect = ui.available_rect_before_wrap();
             self.viewport(ui, actions);
-            view
         });
         self.dialogs(ui, &context, actions);
-        self.messages.show(ui.ctx(), shown.inner, self.preferences.spoken_language());
     }
 
     fn menus(&self, ui: &mut Ui, commands: &CommandContext, actions: &mut Vec<Action>) {
@@ -72,6 +70,8 @@ impl App {
 
     fn scene_panel(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let language = self.language();
+        // Neither a short tree nor a narrow inspector makes the panel smaller.
+        ui.set_min_width(ui.available_width());
         let Some(document) = &self.document else { return };
         let selection = self.selection;
         Panel::bottom("inspector").resizable(true).default_size(330.0).show(ui, |ui| {
@@ -115,6 +115,7 @@ impl App {
             self.about_shown = about::show(&ctx, language);
         }
         self.ask(&ctx);
+        self.messages.show(&ctx, self.view_rect, language);
     }
 
     /// What the commands' state depends on.

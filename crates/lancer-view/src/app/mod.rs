@@ -14,6 +14,8 @@ mod saving;
 mod shelf;
 mod status_bar;
 mod strip;
+#[cfg(test)]
+mod tests;
 mod viewport;
 
 pub use action::{Action, Selection};
@@ -34,7 +36,7 @@ use crate::theme;
 use crate::watch::Watch;
 use crate::worker::{OpenStage, Worker};
 use asking::Asking;
-use eframe::egui::{Context, Ui, ViewportCommand};
+use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
 use lancer_core::geometry::{Bounds, DVec2};
@@ -101,6 +103,8 @@ pub struct App {
     copy_when_final: bool,
     /// The middle of the window, in physical pixels.
     screen_size: DVec2,
+    /// The same, in points of the window.
+    view_rect: Rect,
     tree: TreeState,
     inspector: InspectorState,
     settings: SettingsPanel,
@@ -153,6 +157,7 @@ impl App {
             save_when_final: None,
             copy_when_final: false,
             screen_size: DVec2::ONE,
+            view_rect: Rect::NOTHING,
             tree: TreeState::default(),
             inspector: InspectorState::default(),
             settings: SettingsPanel::default(),

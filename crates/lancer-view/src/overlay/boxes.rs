@@ -31,7 +31,7 @@ pub(super) fn draw_tree(pen: &mut Pen, palette: &Palette, world: &World, selecte
 }
 
 fn draw(pen: &mut Pen, boxes: &[[DVec3; 8]], color: Color, casing: Color) {
-    let style = Style { color, casing: Some(casing), alpha: 0.85, width: 1.25 };
+    let style = Style { color, casing: Some(casing), alpha: 0.9, width: 1.25 };
     pen.draw(style, |strokes| {
         for corners in boxes {
             for [a, b] in EDGES {

@@ -4,9 +4,13 @@ use super::OverlayImage;
 use super::lens::End;
 use super::surfaces::Surfaces;
 use lancer_core::geometry::DVec2;
+use std::ops::Range;
 
 /// How much of a line is left where a surface hides it.
 const HIDDEN: f32 = 0.22;
+
+/// What covers a pixel less than this is not worth the time that it takes to find what hides it.
+const UNSEEN: f32 = 1.5 / 255.0;
 
 /// What a line looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,29 +60,38 @@ impl Canvas {
         let way = b.at - a.at;
         let per_length = 1.0 / way.length_squared().max(f64::MIN_POSITIVE);
         // Lines thinner than a pixel are a pixel wide and cover less.
-        let thin = stroke.width.min(1.0);
+        let thin = stroke.width.min(1.0) as f32;
         let reach = 0.5 * stroke.width.max(1.0) + 0.5;
-        for_each_pixel_near(a.at, b.at, reach, [self.image.width, self.image.height], |x, y| {
-            let center = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let t = ((center - a.at).dot(way) * per_length).clamp(0.0, 1.0);
-            let at = a.at + way * t;
-            let coverage = (reach - (center - at).length()).min(1.0) * thin;
-            if coverage <= 0.0 {
-                return;
+        let (width, height) = (self.image.width, self.image.height);
+        // The axis along which the line is longer is walked pixel by pixel.
+        let steep = way.y.abs() > way.x.abs();
+        let (columns, rows) = if steep { (height, width) } else { (width, height) };
+        let flip = |v: DVec2| if steep { DVec2::new(v.y, v.x) } else { v };
+        let (from, flipped_way) = (flip(a.at), flip(way));
+        let slope = if flipped_way.x == 0.0 { 0.0 } else { flipped_way.y / flipped_way.x };
+        let across = reach * (1.0 + slope * slope).sqrt();
+        let ends = [from.x, from.x + flipped_way.x];
+        for column in pixels(ends[0].min(ends[1]) - reach, ends[0].max(ends[1]) + reach, columns) {
+            let x = f64::from(column) + 0.5;
+            let y = from.y + slope * (x - from.x);
+            let t = ((flip(DVec2::new(x, y)) - a.at).dot(way) * per_length).clamp(0.0, 1.0);
+            let point = End::between(&a, &b, t);
+            let alpha = stroke.alpha * thin * fade(point.along, point.inverse_depth);
+            if alpha < UNSEEN {
+                continue;
             }
-            let inverse_depth = a.inverse_depth + (b.inverse_depth - a.inverse_depth) * t;
-            // Linear in the picture is what is divided by the depth.
-            let (from, to) = (a.along * a.inverse_depth, b.along * b.inverse_depth);
-            let along = (from + (to - from) * t) / inverse_depth;
-            let mut alpha = stroke.alpha * coverage as f32 * fade(along, inverse_depth);
-            if alpha * 255.0 < 0.5 {
-                return;
+            for row in pixels(y - across, y + across, rows) {
+                let center = flip(DVec2::new(x, f64::from(row) + 0.5));
+                let t = ((center - a.at).dot(way) * per_length).clamp(0.0, 1.0);
+                let coverage = (reach - (center - a.at - way * t).length()).min(1.0) as f32;
+                if alpha * coverage < UNSEEN {
+                    continue;
+                }
+                let (column, row) = if steep { (row, column) } else { (column, row) };
+                let hidden = surfaces.is_some_and(|surfaces| surfaces.hide(column, row, &point));
+                self.cover(column, row, stroke.color, alpha * coverage * if hidden { HIDDEN } else { 1.0 });
             }
-            if surfaces.is_some_and(|surfaces| surfaces.hide(x, y, at, inverse_depth)) {
-                alpha *= HIDDEN;
-            }
-            self.cover(x, y, stroke.color, alpha);
-        });
+        }
     }
 
     fn cover(&mut self, x: u32, y: u32, color: [u8; 3], alpha: f32) {
@@ -87,43 +100,23 @@ impl Canvas {
             [layer, covered] if layer == self.layer => f32::from(covered) / 255.0,
             _ => 0.0,
         };
-        // NaN ends here too.
-        if !(alpha > before) {
+        if alpha <= before {
             return;
         }
-        self.covered[index] = [self.layer, (alpha * 255.0).round() as u8];
+        self.covered[index] = [self.layer, (alpha * 255.0 + 0.5) as u8];
         // As much more as makes the layer cover `alpha` in all.
         let more = if before < 1.0 { ((alpha - before) / (1.0 - before)).min(1.0) } else { 0.0 };
         let [r, g, b] = color;
-        let over =
-            |below: u8, above: u8| (f32::from(below) * (1.0 - more) + f32::from(above) * more).round() as u8;
+        let over = |below: u8, above: u8| {
+            (f32::from(below) + (f32::from(above) - f32::from(below)) * more + 0.5) as u8
+        };
         let [below_r, below_g, below_b, below_a] = self.image.pixels[index];
         self.image.pixels[index] = [over(below_r, r), over(below_g, g), over(below_b, b), over(below_a, 255)];
     }
 }
 
-/// Calls `visit` with the pixels of an image whose centres are within `reach` of a line, and with some others near it.
-fn for_each_pixel_near(
-    a: DVec2,
-    b: DVec2,
-    reach: f64,
-    [width, height]: [u32; 2],
-    mut visit: impl FnMut(u32, u32),
-) {
-    let way = b - a;
-    let steep = way.y.abs() > way.x.abs();
-    // From here on `x` is the axis along which the line is longer.
-    let flip = |v: DVec2| if steep { DVec2::new(v.y, v.x) } else { v };
-    let (a, b, way) = (flip(a), flip(b), flip(way));
-    let (columns, rows) = if steep { (height, width) } else { (width, height) };
-    let slope = if way.x == 0.0 { 0.0 } else { way.y / way.x };
-    let across = reach * (1.0 + slope * slope).sqrt();
-    // What is outside of the image ends up at its edges, as the cast clamps.
-    let pixels = |from: f64, to: f64, count: u32| (from.floor() as u32)..(to.ceil() as u32).min(count);
-    for column in pixels(a.x.min(b.x) - reach, a.x.max(b.x) + reach, columns) {
-        let y = a.y + slope * (f64::from(column) + 0.5 - a.x);
-        for row in pixels(y - across, y + across, rows) {
-            if steep { visit(row, column) } else { visit(column, row) }
-        }
-    }
+/// The pixels of a row, `count` long, that have a part between two places. Places outside of the row end up at its
+/// ends, as the cast clamps.
+fn pixels(from: f64, to: f64, count: u32) -> Range<u32> {
+    from.floor() as u32..(to.ceil() as u32).min(count)
 }

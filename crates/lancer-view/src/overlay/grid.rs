@@ -5,10 +5,10 @@ use super::pen::{Pen, Strokes, Style};
 use lancer_core::geometry::{DVec2, DVec3};
 
 /// How far the grid reaches from its middle, in distances of the view.
-const REACH: f64 = 4.0;
+const REACH: f64 = 3.0;
 
 /// The least number of squares to a distance of the view; the most is ten times as many.
-const SQUARES: f64 = 3.0;
+const SQUARES: f64 = 2.5;
 
 /// How strong the lines are that bound ten by ten squares, and how strong those of single squares are.
 const STRENGTHS: [f64; 2] = [1.0, 0.45];
@@ -91,7 +91,8 @@ impl Grid {
         } else if k % 10 == 0 {
             (strong + (weak - strong) * self.toward_next, 10.0)
         } else {
-            (weak * (1.0 - self.toward_next), 1.0)
+            // Squared, since as many lines as are seen late on the way would fill the picture with grey.
+            (weak * (1.0 - self.toward_next) * (1.0 - self.toward_next), 1.0)
         }
     }
 }
@@ -158,7 +159,7 @@ mod tests {
     #[test]
     fn where_squares_become_ten_times_as_large_every_line_is_as_strong_before_as_after() {
         let grid = |distance: f64| Grid::for_view(DVec3::Z * distance, DVec3::ZERO).unwrap();
-        let [before, after] = [29.9999, 30.0001].map(grid);
+        let [before, after] = [24.9999, 25.0001].map(grid);
         assert!((after.spacing / before.spacing - 10.0).abs() < 1e-9);
         for k in 0..=1000 {
             let (was, _) = before.rank(k);

@@ -19,7 +19,7 @@ pub(super) struct Lens {
     pub(super) pixels: f64,
 }
 
-/// An end of a line in the viewport.
+/// An end of a line in the viewport, or a point on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct End {
     /// Pixels from the top left corner.
@@ -28,6 +28,17 @@ pub(super) struct End {
     pub(super) inverse_depth: f64,
     /// Where on the line that was asked for: from 0 to 1.
     pub(super) along: f64,
+}
+
+impl End {
+    /// The point of a line at `t` of its length in the picture.
+    pub(super) fn between(a: &Self, b: &Self, t: f64) -> Self {
+        let mix = |a: f64, b: f64| a + (b - a) * t;
+        let inverse_depth = mix(a.inverse_depth, b.inverse_depth);
+        // What is linear in the world is linear in the picture once divided by the depth.
+        let along = mix(a.along * a.inverse_depth, b.along * b.inverse_depth) / inverse_depth;
+        Self { at: a.at + (b.at - a.at) * t, inverse_depth, along }
+    }
 }
 
 impl Lens {

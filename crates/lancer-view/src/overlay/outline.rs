@@ -5,58 +5,108 @@ use super::pen::{Pen, Style};
 use lancer_core::geometry::DVec2;
 use lancer_core::render::Features;
 use lancer_core::world::ObjectId;
+use std::collections::HashMap;
 
 /// A line around what is seen of the selected objects together.
 pub(super) fn draw(pen: &mut Pen, palette: &Palette, features: &Features, selected: &[ObjectId]) {
-    let lines = contour(features, selected);
-    let lines = lines.into_iter().map(|line| line.map(|place| pen.surfaces.to_viewport(place)));
-    let lines = lines.collect::<Vec<_>>();
+    let mut contour = Contour::of(&Mask::new(features, selected));
+    contour.smooth();
+    let places = contour.corners.iter().map(|&corner| pen.surfaces.to_viewport(corner)).collect::<Vec<_>>();
     let style = Style { color: palette.selection, casing: Some(palette.casing), alpha: 1.0, width: 2.0 };
     pen.draw(style, |strokes| {
-        for &line in &lines {
-            strokes.before_all(line);
+        for &line in &contour.lines {
+            strokes.before_all(line.map(|corner| places[corner]));
         }
     });
 }
 
-/// The border between the pixels that show one of some objects and the others, as short lines in pixels of the
-/// features. It is open at the edges of the picture.
-///
-/// Marching squares: between each four pixels, a line cuts off the corners that are not like the others. That leaves
-/// no stairs.
-fn contour(features: &Features, selected: &[ObjectId]) -> Vec<[DVec2; 2]> {
-    let mut is_selected = vec![false; selected.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
-    for id in selected {
-        is_selected[id.index()] = true;
-    }
-    let row = |y: u32| {
-        let shows =
-            |x| features.object(x, y).is_some_and(|id| is_selected.get(id.index()).is_some_and(|&is| is));
-        (0..features.width()).map(shows).collect::<Vec<bool>>()
-    };
-    let mut lines = Vec::new();
-    if features.height() == 0 {
-        return lines;
-    }
-    let mut above = row(0);
-    for y in 1..features.height() {
-        let below = row(y);
-        for (x, (upper, lower)) in above.windows(2).zip(below.windows(2)).enumerate() {
-            if [upper[1], lower[0], lower[1]] != [upper[0]; 3] {
-                let middle = DVec2::new(x as f64 + 1.0, f64::from(y));
-                cut(middle, [upper[0], upper[1], lower[1], lower[0]], &mut lines);
-            }
-        }
-        above = below;
-    }
-    lines
+/// Which pixels of the features show one of some objects.
+struct Mask<'a> {
+    features: &'a Features,
+    /// By the objects' ids; those beyond its end are not selected.
+    is_selected: Vec<bool>,
 }
 
-/// The lines between four pixels that meet at `middle`, given clockwise from the upper left one.
-fn cut(middle: DVec2, [a, b, c, d]: [bool; 4], lines: &mut Vec<[DVec2; 2]>) {
-    let sides = [(a != b, DVec2::NEG_Y), (b != c, DVec2::X), (c != d, DVec2::Y), (d != a, DVec2::NEG_X)];
-    let mut crossed = sides.into_iter().filter(|(crossed, _)| *crossed).map(|(_, side)| middle + 0.5 * side);
-    while let (Some(from), Some(to)) = (crossed.next(), crossed.next()) {
-        lines.push([from, to]);
+impl<'a> Mask<'a> {
+    fn new(features: &'a Features, selected: &[ObjectId]) -> Self {
+        let mut is_selected = vec![false; selected.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
+        for id in selected {
+            is_selected[id.index()] = true;
+        }
+        Self { features, is_selected }
+    }
+
+    fn row(&self, y: u32) -> Vec<bool> {
+        let is_selected = |id: ObjectId| self.is_selected.get(id.index()).is_some_and(|&is| is);
+        (0..self.features.width()).map(|x| self.features.object(x, y).is_some_and(is_selected)).collect()
     }
 }
+
+/// The border of a mask. It is open at the edges of the picture.
+#[derive(Default)]
+struct Contour {
+    /// In pixels of the features.
+    corners: Vec<DVec2>,
+    /// Each from corner to corner.
+    lines: Vec<[usize; 2]>,
+    /// The corners by twice their coordinates, which are whole numbers.
+    known: HashMap<[u32; 2], usize>,
+}
+
+impl Contour {
+    /// Marching squares: between each four pixels, a line cuts off the corners that are not like the others.
+    fn of(mask: &Mask) -> Self {
+        let mut contour = Self::default();
+        let mut rows = (0..mask.features.height()).map(|y| mask.row(y));
+        let Some(mut above) = rows.next() else { return contour };
+        for (y, below) in (1..).zip(rows) {
+            for (x, (upper, lower)) in (1..).zip(above.windows(2).zip(below.windows(2))) {
+                if [upper[1], lower[0], lower[1]] != [upper[0]; 3] {
+                    contour.cut([2 * x, 2 * y], [upper[0], upper[1], lower[1], lower[0]]);
+                }
+            }
+            above = below;
+        }
+        contour
+    }
+
+    /// Adds the lines between four pixels that meet at a place, given clockwise from the upper left one.
+    fn cut(&mut self, [x, y]: [u32; 2], [a, b, c, d]: [bool; 4]) {
+        let sides = [(a != b, [x, y - 1]), (b != c, [x + 1, y]), (c != d, [x, y + 1]), (d != a, [x - 1, y])];
+        let mut crossed = sides.into_iter().filter(|(crossed, _)| *crossed).map(|(_, side)| side);
+        while let (Some(from), Some(to)) = (crossed.next(), crossed.next()) {
+            let line = [self.corner(from), self.corner(to)];
+            self.lines.push(line);
+        }
+    }
+
+    fn corner(&mut self, doubled: [u32; 2]) -> usize {
+        *self.known.entry(doubled).or_insert_with(|| {
+            let [x, y] = doubled.map(|coordinate| 0.5 * f64::from(coordinate));
+            self.corners.push(DVec2::new(x, y));
+            self.corners.len() - 1
+        })
+    }
+
+    /// Takes the stairs out of it: moves each corner to between its neighbours, some times. Where the line ends,
+    /// at the edge of the picture, it stays.
+    fn smooth(&mut self) {
+        for _ in 0..SMOOTHINGS {
+            let mut neighbours = vec![(DVec2::ZERO, 0); self.corners.len()];
+            for &[a, b] in &self.lines {
+                for (corner, other) in [(a, b), (b, a)] {
+                    neighbours[corner].0 += self.corners[other];
+                    neighbours[corner].1 += 1;
+                }
+            }
+            for (corner, (sum, count)) in self.corners.iter_mut().zip(neighbours) {
+                if count == 2 {
+                    *corner = 0.5 * *corner + 0.25 * sum;
+                }
+            }
+        }
+    }
+}
+
+/// How often the outline is smoothed: less leaves stairs, more rounds corners that are none.
+const SMOOTHINGS: u32 = 6;

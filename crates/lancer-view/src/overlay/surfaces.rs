@@ -1,6 +1,6 @@
 //! What stands before a line.
 
-use super::lens::Lens;
+use super::lens::{End, Lens};
 use lancer_core::camera::{Camera, CameraError};
 use lancer_core::geometry::DVec2;
 use lancer_core::render::Features;
@@ -41,17 +41,17 @@ impl<'a> Surfaces<'a> {
         })
     }
 
-    /// Whether the surface at a pixel hides the point of a line whose place is `at`, in or near that pixel.
+    /// Whether the surface at a pixel hides a point of a line in or near that pixel.
     ///
     /// The surface is taken for its tangent plane: a line that lies on a floor is on it also where the floor's depth
     /// changes much from pixel to pixel.
-    pub(super) fn hide(&self, x: u32, y: u32, at: DVec2, inverse_depth: f64) -> bool {
+    pub(super) fn hide(&self, x: u32, y: u32, point: &End) -> bool {
         let pixel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let Some((x, y)) = self.feature_at(pixel) else { return false };
         let Some(distance) = self.features.distance(x, y) else { return false };
         let center = self.lens.through(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let at_center = center.length() / distance;
-        let ratio = inverse_depth / at_center;
+        let ratio = point.inverse_depth / at_center;
         if ratio > WITHIN_A_PIXEL || ratio * WITHIN_A_PIXEL < 1.0 {
             return ratio < 1.0;
         }
@@ -59,7 +59,7 @@ impl<'a> Surfaces<'a> {
         let toward = |direction| normal.map_or(0.0, |normal| normal.dot(direction));
         let facing = toward(center);
         let change =
-            if facing < 0.0 { toward(self.lens.through(self.to_features(at))) / facing } else { 1.0 };
+            if facing < 0.0 { toward(self.lens.through(self.to_features(point.at))) / facing } else { 1.0 };
         ratio < change.clamp(1.0 / WITHIN_A_PIXEL, WITHIN_A_PIXEL) * (1.0 - ON_THE_SURFACE)
     }
 

@@ -58,6 +58,10 @@ impl Rows<'_> {
         let language = self.language;
         let name = language.say(parameter.name);
         self.row(parameter, value, own, |ui, _, value| {
+            // Three numbers in a narrow place: what is around them gives way.
+            let spacing = ui.spacing_mut();
+            (spacing.item_spacing.x, spacing.button_padding.x) = (3.0, 2.0);
+            spacing.interact_size.x = 24.0;
             let mut shown = value.to_array().map(|channel| channel as f32);
             let button = ui.color_edit_button_rgb(&mut shown).accessible_name(name);
             if button.changed() {
@@ -146,7 +150,9 @@ impl Rows<'_> {
         let height = self.ui.spacing().interact_size.y;
         self.ui.horizontal(|ui| {
             let spacing = ui.spacing().item_spacing.x;
-            let width = ui.available_width() - RESET_WIDTH - 2.0 * spacing;
+            // A row that is too long for its panel makes none of the others longer.
+            let room = ui.available_width().min(ui.clip_rect().right() - ui.cursor().left());
+            let width = room - RESET_WIDTH - 2.0 * spacing;
             let label = cell(ui, vec2(width * (1.0 - CONTROL_SHARE), height), |ui| {
                 ui.add(Label::new(name).truncate()).on_hover_text(meaning)
             });

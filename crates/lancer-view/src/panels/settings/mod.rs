@@ -124,7 +124,8 @@ fn render_button(ui: &mut Ui, context: &CommandContext, language: Language, acti
     let selection = ui.visuals().selection;
     let text = RichText::new(language.say(command.name())).strong().color(selection.stroke.color);
     let size = vec2(ui.available_width(), 1.6 * ui.spacing().interact_size.y);
-    let button = Button::new(text).min_size(size).fill(selection.bg_fill);
+    let grow = || eframe::egui::Atom::grow();
+    let button = Button::new((grow(), text, grow())).min_size(size).fill(selection.bg_fill);
     let keys = command.shortcuts().iter().map(|keys| crate::commands::shortcut_text(keys, language));
     let tip = format!("{} ({})", language.say(command.description()), keys.collect::<Vec<_>>().join(", "));
     ui.vertical_centered_justified(|ui| {
