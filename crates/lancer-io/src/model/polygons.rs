@@ -337,6 +337,18 @@ mod tests {
     }
 
     #[test]
+    fn what_was_no_mesh_is_read_as_any_other_file() {
+        let mut polygons = square_at(DVec3::splat(1e6));
+        polygons.corners.clear();
+        polygons.faces.clear();
+        polygons.corners.extend([0, 1, 2, 3].map(|i| corner(i, NONE)));
+        assert!(polygons.end_face(0, 0));
+        let Meshes { meshes, origin } = polygons.into_mesh_as_stored().unwrap();
+        assert_eq!(meshes[0].1.triangle_count(), 2);
+        assert_ne!(origin, DVec3::ZERO);
+    }
+
+    #[test]
     fn polygons_of_two_corners_are_dropped() {
         let mut polygons = Polygons::default();
         polygons.corners.extend([0, 1].map(|i| corner(i, NONE)));

@@ -7,6 +7,9 @@
 //! 2. `deserialize`: the tree to the types of `model`, once for every fault, so that all are found;
 //! 3. `build`: names looked up, models and images fetched through [`Assets`].
 //!
+//! And back: `changes` says what makes one scene into another as overrides, `patch` writes overrides into a file's
+//! text, `write` makes a file of any scene.
+//!
 //! The JSON Schema is made from the same `model`. No other module knows YAML.
 
 mod apply;

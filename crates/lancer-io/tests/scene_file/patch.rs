@@ -290,6 +290,32 @@ proptest! {
     }
 }
 
+/// What YAML makes the most of.
+const MARKS: [&str; 16] =
+    ["\n", " ", "  ", ":", ": ", "- ", "#", ",", "{", "}", "[", "]", "&a ", "*a", "'", "é"];
+
+proptest! {
+    #[test]
+    fn a_text_however_damaged_is_patched_rightly_or_refused(
+        file in 0..FILES.len(),
+        edit in 0..OVERRIDES.len(),
+        damages in prop::collection::vec((any::<prop::sample::Index>(), 0..MARKS.len(), 0..3_usize), 1..4),
+    ) {
+        let mut characters = FILES[file].chars().collect::<Vec<_>>();
+        for (place, mark, removed) in damages {
+            let start = place.index(characters.len());
+            let end = (start + removed).min(characters.len());
+            characters.splice(start..end, MARKS[mark].chars());
+        }
+        let text = characters.into_iter().collect::<String>();
+        if let Ok(found) = try_patch(&text, &[OVERRIDES[edit]])
+            && let Ok(expected) = load_bytes(text.as_bytes(), &[OVERRIDES[edit]])
+        {
+            prop_assert_eq!(load_bytes(found.as_bytes(), &[]).unwrap().scene, expected.scene);
+        }
+    }
+}
+
 #[test]
 fn each_override_finds_its_place_in_each_file() {
     for file in FILES {

@@ -190,6 +190,8 @@ fn what_could_not_be_read_is_not_written() {
     scene.add(Node::group("", [looped]));
     assert!(fault(&scene).contains("hold itself"), "{}", fault(&scene));
 
+    let nowhere = directory.path().join("no/scene.yaml");
+    assert!(write_whole(&everything(), &nowhere).unwrap_err().to_string().contains("cannot be written"));
     assert_eq!(fs::read_to_string(&path).unwrap(), "as it was");
     assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
 }

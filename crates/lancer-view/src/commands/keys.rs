@@ -25,7 +25,7 @@ pub fn pressed(ctx: &Context, context: &CommandContext) -> Vec<Command> {
         });
     });
     if in_text && !commands.is_empty() {
-        ctx.memory_mut(|memory| memory.stop_text_input());
+        ctx.memory_mut(eframe::egui::Memory::stop_text_input);
     }
     commands
 }

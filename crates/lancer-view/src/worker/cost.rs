@@ -16,7 +16,7 @@ pub(super) struct Cost {
     /// Rays of ambient occlusion that a subpixel takes for each direction asked for.
     ao_rays_per_direction: f64,
     /// Whether anything was measured.
-    pub(super) is_measured: bool,
+    is_measured: bool,
 }
 
 impl Cost {
@@ -30,7 +30,7 @@ impl Cost {
     /// How long an image takes, in seconds.
     pub(super) fn of(&self, settings: &Settings) -> f64 {
         let pixels = f64::from(settings.width) * f64::from(settings.height);
-        let subpixels = f64::from(settings.samples * settings.samples);
+        let subpixels = f64::from(settings.samples) * f64::from(settings.samples);
         let ao_rays = self.ao_rays_per_direction * f64::from(settings.ao.samples);
         // One more for what the pixel shows.
         let rays = 1.0 + subpixels * (self.rays_per_subpixel + Self::AO_RAY * ao_rays);

@@ -257,3 +257,146 @@ fn spares(running: &ViewRequest, phase: Phase, request: &ViewRequest) -> bool {
     let compiles_for_both = phase == Phase::Compiling && running.same_world(request);
     both_move || comes_to_rest || compiles_for_both
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::worker::tests::{request, scene};
+    use lancer_core::geometry::DVec3;
+    use lancer_core::scene::Scene;
+    use std::sync::Arc;
+
+    fn at(x: f64, moving: bool) -> ViewRequest {
+        let mut request = request(&scene());
+        request.camera.eye += DVec3::X * x;
+        ViewRequest { moving, ..request }
+    }
+
+    fn next_view(desk: &Desk) -> (ViewRequest, CancelToken) {
+        assert!(desk.is_busy(), "there is no job to wait for");
+        match desk.next() {
+            Some(Job::View(request, cancel)) => (request, cancel),
+            _ => panic!("the next job is not the view"),
+        }
+    }
+
+    #[test]
+    fn the_latest_of_waiting_requests_is_taken_and_the_others_never() {
+        let desk = Desk::default();
+        for x in 0..5 {
+            desk.view(at(f64::from(x), false));
+        }
+        assert_eq!(next_view(&desk).0.camera, at(4.0, false).camera);
+        desk.done();
+        assert!(!desk.is_busy());
+    }
+
+    #[test]
+    fn another_picture_cancels_the_one_at_rest_at_once() {
+        for moving in [false, true] {
+            let desk = Desk::default();
+            desk.view(at(0.0, false));
+            let (_, cancel) = next_view(&desk);
+            desk.enter(Phase::Tracing);
+            desk.view(at(1.0, moving));
+            assert!(cancel.is_cancelled());
+            assert_eq!(next_view(&desk).0.camera, at(1.0, moving).camera);
+        }
+    }
+
+    #[test]
+    fn while_all_moves_the_image_under_way_is_finished_and_then_the_latest_is_taken() {
+        let desk = Desk::default();
+        desk.view(at(0.0, true));
+        let (_, cancel) = next_view(&desk);
+        desk.enter(Phase::Tracing);
+        for x in 1..5 {
+            desk.view(at(f64::from(x), true));
+        }
+        assert!(!cancel.is_cancelled());
+        assert_eq!(next_view(&desk).0.camera, at(4.0, true).camera);
+    }
+
+    #[test]
+    fn the_image_under_way_is_finished_when_it_comes_to_rest_and_not_when_another_does() {
+        for (x, cancelled) in [(0.0, false), (1.0, true)] {
+            let desk = Desk::default();
+            desk.view(at(0.0, true));
+            let (_, cancel) = next_view(&desk);
+            desk.enter(Phase::Tracing);
+            desk.view(at(x, false));
+            assert_eq!(cancel.is_cancelled(), cancelled);
+            assert!(!next_view(&desk).0.moving);
+        }
+    }
+
+    #[test]
+    fn a_request_that_changes_nothing_does_nothing() {
+        let desk = Desk::default();
+        desk.view(at(0.0, false));
+        let (_, cancel) = next_view(&desk);
+        desk.view(at(0.0, false));
+        // Nor does one that might move soon: what is sharp stays so.
+        desk.view(at(0.0, true));
+        assert!(!cancel.is_cancelled() && !desk.view_waits());
+        desk.done();
+        desk.view(at(0.0, true));
+        desk.view(at(0.0, false));
+        assert!(!desk.is_busy());
+    }
+
+    #[test]
+    fn a_new_revision_of_the_same_picture_is_told_and_does_not_disturb_it() {
+        let desk = Desk::default();
+        desk.view(at(0.0, false));
+        let (made, cancel) = next_view(&desk);
+        let mut renamed = Scene::clone(&made.scene);
+        renamed.name = "another name".into();
+        renamed.tone.exposure = 2.0;
+        let request = |revision| ViewRequest { revision, scene: Arc::new(renamed.clone()), ..made.clone() };
+        desk.view(request(8));
+        assert!(!cancel.is_cancelled() && !desk.view_waits());
+        assert_eq!(desk.revision(&made), 8);
+        desk.done();
+        desk.view(request(9));
+        assert_eq!(next_view(&desk).0.revision, 9, "a finished picture is told again");
+    }
+
+    #[test]
+    fn a_camera_that_moves_does_not_cancel_the_building_of_the_world_and_another_world_does() {
+        let desk = Desk::default();
+        desk.view(at(0.0, false));
+        let (made, cancel) = next_view(&desk);
+        desk.view(at(1.0, true));
+        desk.view(at(2.0, false));
+        assert!(!cancel.is_cancelled());
+        let mut darker = Scene::clone(&made.scene);
+        darker.lights.clear();
+        desk.view(ViewRequest { scene: Arc::new(darker), ..made });
+        assert!(cancel.is_cancelled());
+    }
+
+    #[test]
+    fn the_view_rests_while_a_picture_is_made_and_is_taken_up_again() {
+        let desk = Desk::default();
+        desk.view(at(0.0, false));
+        let (made, cancel) = next_view(&desk);
+        let ViewRequest { scene, revision, options, threads, camera, settings, channel, .. } = made;
+        let request = RenderRequest { scene, revision, options, threads, camera, settings, channel };
+        let (first, dropped) = desk.render(request.clone());
+        assert!(cancel.is_cancelled() && dropped.is_none());
+        let (second, dropped) = desk.render(request);
+        assert_eq!(dropped, Some(first), "the latest render wins");
+        assert!(matches!(desk.next(), Some(Job::Render(id, ..)) if id == second));
+        next_view(&desk);
+    }
+
+    #[test]
+    fn a_view_that_is_stopped_keeps_nobody_busy() {
+        let desk = Desk::default();
+        desk.view(at(0.0, false));
+        let (_, cancel) = next_view(&desk);
+        desk.stop_view();
+        assert!(cancel.is_cancelled() && !desk.is_busy());
+    }
+}

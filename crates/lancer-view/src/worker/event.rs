@@ -9,6 +9,7 @@ use lancer_core::render::{Feature, Features, Tile, feature_at};
 use lancer_core::world::World;
 use lancer_io::diagnostics::LoadError;
 use lancer_io::{LoadOptions, Loaded};
+use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -68,7 +69,6 @@ pub enum OpenStage {
 }
 
 /// A scene that was opened.
-#[derive(Debug)]
 pub struct Opened {
     /// Where it comes from.
     pub source: Source,
@@ -83,7 +83,7 @@ pub struct Opened {
 }
 
 /// An image for the viewport.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Frame {
     /// The image, linear; smaller than the viewport in all passes but the last.
     pub image: Image,
@@ -114,7 +114,7 @@ pub struct Frame {
 }
 
 /// How far a render is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Progress {
     /// The part of the pixels that is done, 0 to 1.
     pub done: f32,
@@ -128,7 +128,6 @@ pub struct Progress {
 }
 
 /// A finished render.
-#[derive(Debug)]
 pub struct Rendered {
     /// Which.
     pub id: RenderId,
@@ -164,4 +163,53 @@ pub enum RenderFault {
     /// Something is wrong with the scene, the camera or the settings, or a bug.
     #[error("{0}")]
     Message(String),
+}
+
+// For logs and failed tests: what pixels, scenes and worlds hold would fill gigabytes.
+
+impl fmt::Debug for Opened {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let warnings = &self.loaded.warnings;
+        f.debug_struct("Opened")
+            .field("source", &self.source)
+            .field("warnings", warnings)
+            .finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Frame")
+            .field("size", &(self.image.width(), self.image.height()))
+            .field("viewport", &(self.width, self.height))
+            .field("camera", &self.camera)
+            .field("revision", &self.revision)
+            .field("pass", &self.pass)
+            .field("passes", &self.passes)
+            .field("is_final", &self.is_final)
+            .field("tiles_done", &self.tiles_done)
+            .field("seconds", &self.seconds)
+            .finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Progress")
+            .field("done", &self.done)
+            .field("rays", &self.rays)
+            .field("elapsed", &self.elapsed)
+            .field("tiles", &self.tiles.len())
+            .finish()
+    }
+}
+
+impl fmt::Debug for Rendered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Rendered")
+            .field("id", &self.id)
+            .field("size", &(self.image.width(), self.image.height()))
+            .field("elapsed", &self.elapsed)
+            .finish_non_exhaustive()
+    }
 }

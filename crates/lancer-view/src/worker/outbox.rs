@@ -63,7 +63,7 @@ impl Outbox {
 
 /// Adds an event to those that wait: a frame takes the place of an older one, a progress is joined with an older
 /// one of the same render.
-fn join(events: &mut Vec<Event>, mut event: Event) {
+pub(super) fn join(events: &mut Vec<Event>, mut event: Event) {
     match &mut event {
         Event::Frame(_) => events.retain(|waiting| !matches!(waiting, Event::Frame(_))),
         Event::RenderProgress(id, progress) => {
@@ -78,4 +78,59 @@ fn join(events: &mut Vec<Event>, mut event: Event) {
         _ => {}
     }
     events.push(event);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::worker::RenderId;
+    use lancer_core::integrator::RayCounts;
+    use lancer_core::render::Tile;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
+    use std::time::Duration;
+
+    fn progress(id: u64, x: u32) -> Event {
+        let tiles = vec![Tile { x, y: 0, width: 1, height: 1, pixels: vec![[0.0; 3]] }];
+        let (rays, elapsed) = (RayCounts::default(), Duration::ZERO);
+        Event::RenderProgress(RenderId(id), Progress { done: x as f32, rays, elapsed, tiles })
+    }
+
+    #[test]
+    fn progress_that_waits_is_joined_and_no_tile_is_lost() {
+        let outbox = Outbox::new(|| {});
+        for x in 0..3 {
+            outbox.push(progress(1, x));
+        }
+        outbox.push(progress(2, 7));
+        let events = outbox.take();
+        let [Event::RenderProgress(_, first), Event::RenderProgress(_, other)] = &events[..] else {
+            panic!("{events:?}");
+        };
+        assert_eq!(first.tiles.iter().map(|tile| tile.x).collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!((first.done, other.done), (2.0, 7.0));
+        assert!(outbox.take().is_empty());
+    }
+
+    #[test]
+    fn each_event_wakes_and_none_does_once_it_is_closed() {
+        let wakes = Arc::new(AtomicU32::new(0));
+        let counted = Arc::clone(&wakes);
+        let outbox = Outbox::new(move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+        });
+        outbox.push(progress(1, 0));
+        outbox.push(progress(1, 1));
+        outbox.close();
+        outbox.push(progress(1, 2));
+        assert_eq!(wakes.load(Ordering::Relaxed), 2);
+        assert!(outbox.take().is_empty());
+    }
+
+    #[test]
+    fn a_wake_that_panics_leaves_the_event() {
+        let outbox = Outbox::new(|| panic!("no window"));
+        outbox.push(progress(1, 0));
+        assert_eq!(outbox.take().len(), 1);
+    }
 }

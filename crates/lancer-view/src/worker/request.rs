@@ -18,7 +18,7 @@ pub enum Channel {
     Normals,
     /// A colour for each object.
     Objects,
-    /// Ambient occlusion alone, as grey.
+    /// Ambient occlusion alone, as grey; white where it is off.
     Occlusion,
 }
 

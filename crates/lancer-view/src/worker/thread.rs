@@ -69,6 +69,7 @@ impl RenderThread {
 
     /// Shows a picture in the viewport. Returns its last frame, or none where another request came in between.
     fn show(&mut self, request: &ViewRequest, cancel: &CancelToken) -> Result<Option<Frame>, RenderFault> {
+        request.settings.validate().map_err(RenderError::from)?;
         let Self { desk, outbox, worlds, view, .. } = self;
         let pool = self.pool.of(request.threads)?;
         let world = pool.install(|| worlds.world(&request.scene, &request.options, cancel))?;
@@ -90,6 +91,7 @@ impl RenderThread {
     ) -> Result<Box<Rendered>, RenderFault> {
         let Self { outbox, worlds, .. } = self;
         outbox.push(Event::RenderStarted(id));
+        request.settings.validate().map_err(RenderError::from)?;
         let pool = self.pool.of(request.threads)?;
         let world = pool.install(|| worlds.world(&request.scene, &request.options, cancel))?;
         let pixels = u64::from(request.settings.width) * u64::from(request.settings.height);

@@ -78,21 +78,23 @@ impl View {
         let mut divisor = shown.map(|shown| shown.pass.divisor);
         if request.moving {
             let cost = self.costs.of(request.channel);
-            let pass = passes::moving(&request.settings, cost, self.last_moving.as_ref());
+            let pass = passes::moving(&request.settings, request.channel, cost, self.last_moving.as_ref());
             self.last_moving = Some(pass);
             return self.pass(showing, pass, (0, 1));
         }
-        for number in 0.. {
+        let mut number = 0;
+        loop {
             let plan = passes::resting(&request.settings, self.costs.of(request.channel), divisor);
             let pass = plan[0];
             let frame = self.pass(showing, pass, (number, number + plan.len() as u32))?;
+            // Each pass is finer than the one before, so there is a last one.
             if pass.is_final {
                 return Ok(frame);
             }
             divisor = Some(pass.divisor);
+            number += 1;
             showing.outbox.push(Event::Frame(Box::new(frame)));
         }
-        unreachable!("each pass is finer than the one before, down to the last")
     }
 
     /// Makes one image.
@@ -118,7 +120,7 @@ impl View {
         let done = if channel::shows_features(request.channel) {
             channel::show(request.channel, &features)
         } else {
-            let film = pass.is_final.then(|| Mutex::new(Film::over(self.base(&pass))));
+            let film = pass.is_final.then(|| Mutex::new(Film::over(self.base(request.channel, &pass))));
             let on_tile = |tile: &_, rays: &_| {
                 let Some(film) = &film else { return };
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
@@ -155,10 +157,11 @@ impl View {
         Ok(features)
     }
 
-    /// What is shown until a pass has its pixels: the last image, which is the pass before where there was one.
-    fn base(&self, pass: &Pass) -> Image {
+    /// What is shown until a pass has its pixels: the last image of the channel, which is the pass before where
+    /// there was one.
+    fn base(&self, channel: Channel, pass: &Pass) -> Image {
         let (width, height) = (pass.settings.width, pass.settings.height);
-        match &self.shown {
+        match self.shown.as_ref().filter(|shown| shown.request.channel == channel) {
             Some(shown) => stretched(&shown.frame.image, width, height),
             None => Image::black(width, height),
         }

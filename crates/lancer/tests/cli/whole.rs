@@ -1,6 +1,6 @@
 //! Built-in scenes and models as files that stand alone, which make the same pictures.
 
-use crate::sandbox::Sandbox;
+use crate::sandbox::{MODEL, Sandbox};
 use lancer_io::scene_file::write_whole;
 use lancer_io::{LoadOptions, load};
 
@@ -26,7 +26,7 @@ fn each_built_in_scene_makes_the_same_picture_from_a_file() {
 #[test]
 fn a_model_makes_the_same_picture_from_a_file_of_its_own() {
     let sandbox = Sandbox::new();
-    let far = crate::sandbox::MODEL.replace("v 0", "v 100.1").replace("v 1", "v 101.1");
+    let far = MODEL.replace("v 1 ", "v 1001.1 ").replace("v 0 ", "v 1000.1 ");
     sandbox.write("model.obj", far);
     let shown = load(&sandbox.path("model.obj"), &LoadOptions::default()).unwrap().scene;
     write_whole(&shown, &sandbox.path("model.json")).unwrap();

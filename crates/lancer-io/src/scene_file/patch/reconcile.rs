@@ -7,7 +7,7 @@
 
 use super::edits::Edits;
 use super::insert;
-use super::layout::{Entry as KeyAndValue, Kind, Layout, Style};
+use super::layout::{Entry as KeyAndValue, Kind, Layout, Style, after_colon};
 use crate::scene_file::syntax::{Entry, Language, Node, Value, flow, flow_key, same_scalar};
 use std::collections::HashSet;
 use std::rc::Rc;
@@ -145,9 +145,9 @@ impl Reconciler<'_> {
             return self.node(value, old, new);
         }
         self.forget_anchors(value);
-        let colon = super::layout::after_colon(self.text, key.span.end)?;
+        let colon = after_colon(self.text, key.span.end)?;
         self.edits.insert(colon, format!(" {}", flow(new, self.language)));
-        let between = &self.text[colon..value.span.start];
+        let between = self.text.get(colon..value.span.start)?;
         let kept = if between.trim().is_empty() { 0 } else { between.rfind('\n')? };
         self.edits.replace(colon + kept..value.span.end, "");
         Some(())

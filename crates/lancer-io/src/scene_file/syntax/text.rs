@@ -130,7 +130,7 @@ mod tests {
         let raw = "\u{feff}{\"a\": \"\\ud83d\\ude00\",\r\n\"b\": 1,\r\"c\": 2}";
         let decoded = decode(raw.as_bytes()).unwrap();
         let offsets = RawOffsets::of(raw, &decoded);
-        for key in ["{", "\"b\"", "\"c\"", "1", "2}"] {
+        for key in ["{", "\"b\"", "\"c\"", ": 1", "2}"] {
             assert_eq!(offsets.get(decoded.find(key).unwrap()), raw.find(key).unwrap(), "{key}");
         }
         assert_eq!(

@@ -16,6 +16,7 @@ use crate::output::{WriteError, write_atomically};
 use lancer_core::scene::{ImageTexture, Node, Scene};
 use parts::{Part, Parts};
 use std::collections::HashMap;
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,8 +43,7 @@ pub fn write_whole(scene: &Scene, path: &Path) -> Result<(), WriteError> {
 
     let directory = path.with_file_name(&folder);
     if !parts.is_empty() {
-        std::fs::create_dir_all(&directory)
-            .map_err(|source| WriteError { path: directory.clone(), source })?;
+        make_directory(&directory).map_err(|source| WriteError { path: directory.clone(), source })?;
     }
     for part in parts.iter() {
         part.write(&directory)?;
@@ -53,6 +53,14 @@ pub fn write_whole(scene: &Scene, path: &Path) -> Result<(), WriteError> {
 
 fn folder_beside(path: &Path) -> Option<String> {
     Some(format!("{}-files", path.file_stem()?.to_string_lossy()))
+}
+
+/// Makes a directory in one that is there, unless it is there already.
+fn make_directory(path: &Path) -> io::Result<()> {
+    match fs::create_dir(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => Ok(()),
+        other => other,
+    }
 }
 
 fn invalid(message: &str) -> io::Error {

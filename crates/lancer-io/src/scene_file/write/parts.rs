@@ -29,7 +29,7 @@ impl Part {
         if is_written(&path, self) {
             return Ok(());
         }
-        write_atomically(&path, |mut out| self.encode(&mut out))
+        write_atomically(&path, |out| self.encode(out))
     }
 
     fn encode(&self, out: impl Write) -> io::Result<()> {

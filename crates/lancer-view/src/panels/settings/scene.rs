@@ -3,12 +3,12 @@
 use super::super::fields::Rows;
 use super::super::scenes;
 use super::{SettingsView, parameters as p};
-use crate::{Action, Command, Language, Phrase, Source};
+use crate::{Action, Command, Document, Language, Phrase, Source};
 use eframe::egui::{ComboBox, RichText, Ui};
 use lancer_core::scene::Scene;
 
 pub(super) fn show(ui: &mut Ui, view: &SettingsView, language: Language, actions: &mut Vec<Action>) {
-    let source = view.document.map(|document| document.source());
+    let source = view.document.map(Document::source);
     Rows { ui: &mut *ui, language }.row(&p::SCENE, &mut (), (), |ui, label, ()| {
         const NONE: Phrase = Phrase::new("None", "Aucune");
         let title = source.map_or_else(|| language.say(NONE).to_owned(), Source::title);
