@@ -39,7 +39,7 @@ const COLOURS_OF_A_SCENE: usize = 200;
 /// checks that the program said nothing to the terminal.
 ///
 /// # Panics
-/// Something did not go as it should; what the program said and what was seen last is told.
+/// Something did not go as it should.
 pub(crate) fn sit(
     name: &str,
     arguments: &[&str],
@@ -66,11 +66,7 @@ pub(crate) fn sit(
     let _ = fs::remove_dir_all(&pictures);
     let mut sitting = Sitting { display: &display, program: program.unwrap(), directory, pictures, steps: 0 };
     let result = sitting.begin().and_then(|()| test(&mut sitting));
-    if let Err(failure) = result {
-        let seen =
-            sitting.keep("failed").map_or_else(|error| error.to_string(), |path| path.display().to_string());
-        panic!("{failure}\nseen last: {seen}\nthe program said: {:?}", sitting.program.stderr());
-    }
+    assert!(result.is_ok(), "{}", result.unwrap_err());
     assert_eq!(sitting.program.stderr(), "");
 }
 
@@ -117,7 +113,7 @@ impl Sitting<'_> {
     /// Keeps a picture of all that is seen now under this name.
     pub(crate) fn keep(&mut self, step: &str) -> Result<PathBuf, Failure> {
         self.steps += 1;
-        let path = self.pictures.join(format!("{:02}-{step}.png", self.steps));
+        let path = self.pictures.join(format!("{:02}-{}.png", self.steps, step.replace(' ', "-")));
         self.display.picture()?.save(&path)?;
         Ok(path)
     }
@@ -205,6 +201,19 @@ impl Sitting<'_> {
     /// How the program ended by itself.
     pub(crate) fn end(&mut self) -> Result<ExitStatus, Failure> {
         self.program.wait_for_end()
+    }
+}
+
+impl Drop for Sitting<'_> {
+    /// Tells what was to be seen when a test failed.
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            match self.keep("failed") {
+                Ok(path) => eprintln!("seen last: {}", path.display()),
+                Err(error) => eprintln!("nothing was seen at last: {error}"),
+            }
+            eprintln!("the program said: {:?}", self.program.stderr());
+        }
     }
 }
 

@@ -37,12 +37,14 @@ fn a_scene_is_chosen_by_its_name() {
 }
 
 #[test]
-fn themes_and_languages_change_the_panels_and_no_pixel_of_the_scene() {
+fn themes_and_languages_leave_the_picture_as_it_is() {
+    // The mark of the point of interest is drawn for the theme.
+    const MARK: f64 = 0.002;
     sit("themes", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
         let before = sitting.see("english")?;
-        for command in ["Light theme", "Francais", "sombre", "English"] {
+        for command in ["light theme", "francais", "sombre", "english"] {
             sitting.command(command)?;
-            assert!(sitting.see(&command.to_lowercase().replace(' ', "-"))? == before, "{command}");
+            assert!(sitting.see(command)?.difference(&before) < MARK, "{command}");
         }
         Ok(())
     });
