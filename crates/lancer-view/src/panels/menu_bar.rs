@@ -42,7 +42,13 @@ pub fn show(ui: &mut Ui, view: &MenuBarView, language: Language, actions: &mut V
     });
 }
 
-fn show_items(ui: &mut Ui, items: &[Item], view: &MenuBarView, language: Language, actions: &mut Vec<Action>) {
+fn show_items(
+    ui: &mut Ui,
+    items: &[Item],
+    view: &MenuBarView,
+    language: Language,
+    actions: &mut Vec<Action>,
+) {
     ui.set_min_width(MENU_WIDTH);
     for item in items {
         match item {

@@ -136,7 +136,11 @@ impl Messages {
     /// Until the next message passes.
     fn time_left(&self) -> Option<Duration> {
         let left = |message: &Message| Some(message.severity.seconds()? - message.age);
-        self.list.iter().filter_map(left).min_by(f64::total_cmp).map(|left| Duration::from_secs_f64(left.max(0.0)))
+        self.list
+            .iter()
+            .filter_map(left)
+            .min_by(f64::total_cmp)
+            .map(|left| Duration::from_secs_f64(left.max(0.0)))
     }
 }
 
@@ -165,7 +169,10 @@ impl Message {
                         });
                     });
                     let close = ui.add(Button::new("✖").frame(false));
-                    close.accessible_name(language.say(DISMISS)).on_hover_text(language.say(DISMISS)).clicked()
+                    close
+                        .accessible_name(language.say(DISMISS))
+                        .on_hover_text(language.say(DISMISS))
+                        .clicked()
                 })
                 .inner
             })
@@ -248,7 +255,8 @@ mod tests {
         messages.info("saved");
         messages.warning("odd");
         messages.error("not saved");
-        let shown = |messages: &Messages| messages.list.iter().map(|message| message.severity).collect::<Vec<_>>();
+        let shown =
+            |messages: &Messages| messages.list.iter().map(|message| message.severity).collect::<Vec<_>>();
         messages.pass(5.0);
         assert_eq!(shown(&messages), [Severity::Warning, Severity::Error]);
         messages.pass(1e6);
@@ -320,7 +328,8 @@ mod tests {
     #[test]
     fn faults_are_shown_with_their_places_lines_and_hints() {
         let window = faults(Language::French);
-        for expected in ["scene.yaml:2:22", "radius is -1, must be positive", "Conseil : use 1", "bunny.ply"] {
+        for expected in ["scene.yaml:2:22", "radius is -1, must be positive", "Conseil : use 1", "bunny.ply"]
+        {
             window.get_by_label(expected);
         }
         window.get_by_label_contains("2 |   - sphere: {radius: -1}");

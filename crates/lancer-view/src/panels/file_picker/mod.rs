@@ -34,7 +34,9 @@ impl Purpose {
     /// The extensions of the files that it is about; the first is added where one is missing.
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            Self::Open => SCENE_EXTENSIONS.into_iter().chain(ModelFormat::ALL.map(ModelFormat::extension)).collect(),
+            Self::Open => {
+                SCENE_EXTENSIONS.into_iter().chain(ModelFormat::ALL.map(ModelFormat::extension)).collect()
+            }
             Self::SavePicture => vec!["png", "exr"],
             Self::SaveScene => vec!["yaml", "yml"],
         }

@@ -43,7 +43,8 @@ impl Place {
         let recent = recent.iter().map(|path| (None, directory_of(path)));
         let mut places = Vec::<Self>::new();
         for (name, path) in named.into_iter().chain(recent) {
-            let path = path.filter(|path| path.is_absolute() && !places.iter().any(|place| place.path == *path));
+            let path =
+                path.filter(|path| path.is_absolute() && !places.iter().any(|place| place.path == *path));
             places.extend(path.map(|path| Self { name, path }));
         }
         places
@@ -125,7 +126,8 @@ impl FilePicker {
     pub(super) fn shown(&self) -> Vec<&Entry> {
         let extensions = self.purpose.extensions();
         let fits = |entry: &Entry| {
-            let extension = entry.path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+            let extension =
+                entry.path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
             entry.is_directory || extension.is_some_and(|found| extensions.contains(&found.as_str()))
         };
         self.entries
@@ -154,7 +156,9 @@ impl FilePicker {
         match answer {
             Ok(Found::Directory { path, entries, is_cut }) => {
                 // What was typed led here; a proposed name stays.
-                if self.purpose == Purpose::Open || resolve(&self.typed, &self.directory) == Some(path.clone()) {
+                if self.purpose == Purpose::Open
+                    || resolve(&self.typed, &self.directory) == Some(path.clone())
+                {
                     self.typed.clear();
                 }
                 (self.directory, self.entries, self.is_cut) = (path, entries, is_cut);
@@ -213,7 +217,8 @@ impl FilePicker {
 
     /// Selects an entry; a file's name is typed with it, so that it can be changed.
     pub(super) fn select(&mut self, index: usize) {
-        let Some((name, is_directory)) = self.shown().get(index).map(|entry| (entry.name.clone(), entry.is_directory))
+        let Some((name, is_directory)) =
+            self.shown().get(index).map(|entry| (entry.name.clone(), entry.is_directory))
         else {
             return;
         };

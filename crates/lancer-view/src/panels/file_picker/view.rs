@@ -117,20 +117,27 @@ impl FilePicker {
 
     fn entries_list(&mut self, ui: &mut Ui, moved: bool, language: Language) {
         const EMPTY: Phrase = Phrase::new("No such files here", "Aucun fichier de ce type ici");
-        const CUT: Phrase = Phrase::new("There are more files than are listed", "Il y a plus de fichiers que listés");
+        const CUT: Phrase =
+            Phrase::new("There are more files than are listed", "Il y a plus de fichiers que listés");
         let (mut clicked, mut opened) = (None, false);
         ui.vertical(|ui| {
             let shown = self.shown();
             let row_height = ui.spacing().interact_size.y;
-            let area = ScrollArea::vertical().id_salt("entries").max_height(LIST_HEIGHT).min_scrolled_height(LIST_HEIGHT);
+            let area = ScrollArea::vertical()
+                .id_salt("entries")
+                .max_height(LIST_HEIGHT)
+                .min_scrolled_height(LIST_HEIGHT);
             area.auto_shrink(false).show_rows(ui, row_height, shown.len().max(1), |ui, rows| {
                 if shown.is_empty() && !self.is_waiting() {
                     ui.weak(language.say(EMPTY));
                 }
                 for (i, entry) in shown.iter().enumerate().skip(rows.start).take(rows.len()) {
                     let is_selected = self.selected == Some(i);
-                    let (icon, note) =
-                        if entry.is_directory { ("📁", String::new()) } else { ("📄", size_text(entry.bytes, language)) };
+                    let (icon, note) = if entry.is_directory {
+                        ("📁", String::new())
+                    } else {
+                        ("📄", size_text(entry.bytes, language))
+                    };
                     let button = Button::selectable(is_selected, format!("{icon} {}", entry.name))
                         .right_text(RichText::new(note).weak())
                         .truncate()
@@ -178,7 +185,8 @@ impl FilePicker {
         }
         let mut is_closed = false;
         ui.horizontal(|ui| {
-            let extensions = self.purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>();
+            let extensions =
+                self.purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>();
             let tip = extensions.join(" ");
             let all = ui.checkbox(&mut self.shows_all, language.say(ALL_FILES)).on_hover_text(tip);
             let hidden = ui.checkbox(&mut self.shows_hidden, language.say(HIDDEN_FILES));
@@ -223,7 +231,9 @@ impl FilePicker {
 fn fault_text(fault: &Fault, language: Language) -> String {
     let (phrase, detail) = match fault {
         Fault::NoName => {
-            return language.say(Phrase::new("Choose or type a name.", "Choisissez ou tapez un nom.")).to_owned();
+            return language
+                .say(Phrase::new("Choose or type a name.", "Choisissez ou tapez un nom."))
+                .to_owned();
         }
         Fault::NoSuchFile(path) => {
             (Phrase::new("There is no file", "Il n’y a pas de fichier"), short_path(path))
@@ -239,9 +249,10 @@ fn fault_text(fault: &Fault, language: Language) -> String {
             Phrase::new("The name must end in", "Le nom doit finir par"),
             purpose.extensions().iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(", "),
         ),
-        Fault::Other(path, error) => {
-            (Phrase::new("This cannot be read:", "Lecture impossible :"), format!("{} ({error})", short_path(path)))
-        }
+        Fault::Other(path, error) => (
+            Phrase::new("This cannot be read:", "Lecture impossible :"),
+            format!("{} ({error})", short_path(path)),
+        ),
     };
     format!("{} {detail}", language.say(phrase))
 }
@@ -382,13 +393,17 @@ mod tests {
         settle(&mut window);
         window.get_by_label("Le remplacer").click();
         settle(&mut window);
-        assert!(matches!(&window.state().actions[..], [Action::SavePicture(path)] if path.ends_with("shot.png")));
+        assert!(
+            matches!(&window.state().actions[..], [Action::SavePicture(path)] if path.ends_with("shot.png"))
+        );
     }
 
     #[test]
     fn what_is_wrong_is_said_in_place_and_in_the_language() {
         let directory = directory();
-        for (language, expected) in [(Language::English, "There is no file"), (Language::French, "Il n’y a pas")] {
+        for (language, expected) in
+            [(Language::English, "There is no file"), (Language::French, "Il n’y a pas")]
+        {
             let mut window = window(Purpose::Open, directory.path(), "none.ply", language);
             window.get_by_label(language.say(PATH_HINT)).type_text("none.ply");
             window.run();
@@ -401,9 +416,12 @@ mod tests {
     #[test]
     fn escape_and_the_button_close_it() {
         let directory = directory();
-        for close in [|window: &Harness<State>| window.key_press(Key::Escape), |window: &Harness<State>| {
-            window.get_by_label("Close").click();
-        }] {
+        for close in [
+            |window: &Harness<State>| window.key_press(Key::Escape),
+            |window: &Harness<State>| {
+                window.get_by_label("Close").click();
+            },
+        ] {
             let mut window = window(Purpose::Open, directory.path(), "", Language::English);
             close(&window);
             settle(&mut window);

@@ -150,7 +150,8 @@ impl Palette {
     }
 
     fn query_field(&mut self, ui: &mut Ui, language: Language) {
-        const HINT: Phrase = Phrase::new("A command, a scene or a file", "Une commande, une scène ou un fichier");
+        const HINT: Phrase =
+            Phrase::new("A command, a scene or a file", "Une commande, une scène ou un fichier");
         let field = TextEdit::singleline(&mut self.query)
             .hint_text(language.say(HINT))
             .desired_width(f32::INFINITY)
@@ -217,7 +218,10 @@ mod tests {
     #[test]
     fn commands_scenes_and_files_are_found() {
         for language in Language::ALL {
-            assert_eq!(first("teapot", language).map(|entry| entry.label(&context(), language)).unwrap(), "teapot");
+            assert_eq!(
+                first("teapot", language).map(|entry| entry.label(&context(), language)).unwrap(),
+                "teapot"
+            );
             assert_eq!(first("bunny", language), Some(Entry::Open(Source::File("/models/bunny.ply".into()))));
         }
         assert_eq!(first("save pic", Language::English), Some(Entry::Command(Command::SavePicture)));

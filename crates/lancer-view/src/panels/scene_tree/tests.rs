@@ -57,7 +57,10 @@ fn window_of(scene: Scene, language: Language) -> Harness<'static, World> {
         actions.into_iter().for_each(|action| world.carry_out(action));
     };
     // Short steps, so that two clicks can be one double click.
-    crate::theme::test_window([280.0, 400.0]).with_step_dt(0.02).with_max_steps(40).build_ui_state(draw, world)
+    crate::theme::test_window([280.0, 400.0])
+        .with_step_dt(0.02)
+        .with_max_steps(40)
+        .build_ui_state(draw, world)
 }
 
 fn window(language: Language) -> Harness<'static, World> {
