@@ -6,15 +6,15 @@
 //! It knows nothing of how rays are intersected or shaded, and its own thread never waits for a render.
 
 mod app;
-mod commands;
+pub mod commands;
 mod document;
 mod language;
 pub mod navigation;
 pub mod overlay;
-mod panels;
+pub mod panels;
 mod preferences;
 mod source;
-mod theme;
+pub mod theme;
 mod watch;
 
 pub use app::{Action, Selection};

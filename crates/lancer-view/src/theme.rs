@@ -102,6 +102,8 @@ fn set(style: &mut Style, palette: &Palette) {
     spacing.menu_margin = Margin::same(6);
     spacing.window_margin = Margin::same(14);
     spacing.tooltip_width = 320.0;
+    // Lists that drop down are no taller than this: all built-in scenes and the recent files fit.
+    spacing.default_area_size = vec2(600.0, 640.0);
     for (text_style, size) in [(TextStyle::Body, 13.5), (TextStyle::Button, 13.5), (TextStyle::Small, 11.0)] {
         if let Some(font) = style.text_styles.get_mut(&text_style) {
             font.size = size;

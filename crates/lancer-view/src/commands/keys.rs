@@ -118,6 +118,7 @@ pub fn key_name(key: Key, language: Language) -> &'static str {
         Key::Equals => Phrase::same("="),
         Key::Period => Phrase::same("."),
         Key::Comma => Phrase::same(","),
+        Key::Space => Phrase::new("Space", "Espace"),
         Key::Questionmark => Phrase::same("?"),
         _ => Phrase::same(key.name()),
     };

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{EditKind, Language};
-use eframe::egui::{Context, Event, Key, Modifiers, RawInput};
+use eframe::egui::{Context, Event, Key, Modifiers, RawInput, Ui};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A state in which every command makes sense.
@@ -97,14 +97,17 @@ fn key(key: Key, modifiers: Modifiers) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
 }
 
+/// Draws once. A frame may take several passes; the keys are gone after the first.
+fn frame(ctx: &Context, events: Vec<Event>, draw: impl FnMut(&mut Ui)) {
+    let mut output = ctx.run_ui(RawInput { events, ..RawInput::default() }, draw);
+    output.textures_delta.clear();
+}
+
 /// What a key gives in a window that shows nothing else.
 fn commands_of(event: Event, context: &CommandContext) -> Vec<Command> {
     let ctx = Context::default();
     let mut commands = Vec::new();
-    let _ = ctx.run_ui(RawInput { events: vec![event], ..RawInput::default() }, |ui| {
-        // A frame may take several passes; the keys are gone after the first.
-        commands.extend(pressed(ui.ctx(), context));
-    });
+    frame(&ctx, vec![event], |ui| commands.extend(pressed(ui.ctx(), context)));
     commands
 }
 
@@ -164,7 +167,7 @@ fn a_text_field_keeps_what_writes_or_edits_and_leaves_the_rest() {
         let mut commands = Vec::new();
         let mut text = String::new();
         for events in [vec![], vec![], vec![event]] {
-            let _ = ctx.run_ui(RawInput { events, ..RawInput::default() }, |ui| {
+            frame(&ctx, events, |ui| {
                 commands.extend(pressed(ui.ctx(), &everything()));
                 ui.text_edit_singleline(&mut text).request_focus();
             });

@@ -2,8 +2,8 @@
 
 use crate::{Language, Phrase};
 use eframe::egui::{
-    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, Ui, UiBuilder, Vec2, emath::Numeric,
-    vec2,
+    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, RichText, Ui, UiBuilder, Vec2,
+    emath::Numeric, vec2,
 };
 use lancer_core::Rgb;
 use lancer_core::geometry::portable;
@@ -159,7 +159,7 @@ impl Rows<'_> {
             cell(ui, vec2(RESET_WIDTH, height), |ui| {
                 if *value != own
                     && ui
-                        .add(Button::new("↺").frame(false))
+                        .add(Button::new(RichText::new("↺").size(16.0)).frame(false))
                         .accessible_name(format!("{} {name}", self.language.say(RESET)))
                         .on_hover_text(self.language.say(TO_WHAT))
                         .clicked()

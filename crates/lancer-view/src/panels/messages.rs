@@ -3,8 +3,8 @@
 use crate::{Action, Language, Phrase, Source};
 use eframe::egui::accesskit::{Live, Role};
 use eframe::egui::{
-    Align2, Area, Button, Color32, Context, Frame, Id, Label, Margin, Order, RichText, ScrollArea, Stroke,
-    TextStyle, Ui, UiKind, vec2,
+    Align2, Area, Button, Color32, Context, Frame, Id, Label, Margin, Order, Rect, RichText, ScrollArea,
+    Stroke, TextStyle, Ui, UiKind, vec2,
 };
 use lancer_io::diagnostics::Diagnostic;
 use std::time::Duration;
@@ -100,15 +100,16 @@ impl Messages {
         self.say(Severity::Error, text);
     }
 
-    /// Draws the messages over a corner of the window, the newest lowest.
-    pub fn show(&mut self, ctx: &Context, language: Language) {
+    /// Draws the messages over a corner of `view`, the newest lowest.
+    pub fn show(&mut self, ctx: &Context, view: Rect, language: Language) {
         if self.list.is_empty() {
             return;
         }
         let mut dismissed = None;
-        let area = Area::new(Id::new("messages")).order(Order::Foreground).kind(UiKind::Popup);
-        let area = area.anchor(Align2::RIGHT_BOTTOM, vec2(-16.0, -40.0)).show(ctx, |ui| {
-            ui.set_width(WIDTH);
+        let area = Area::new(Id::unique("messages")).order(Order::Foreground).kind(UiKind::Popup);
+        let area = area.pivot(Align2::RIGHT_BOTTOM).fixed_pos(view.right_bottom() - vec2(12.0, 12.0));
+        let area = area.show(ctx, |ui| {
+            ui.set_width(WIDTH.min(view.width() - 24.0));
             for message in &self.list {
                 if message.show(ui, language) {
                     dismissed = Some(message.id);
@@ -153,7 +154,7 @@ impl Message {
             .inner_margin(Margin::symmetric(12, 8))
             .show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    ui.colored_label(color, mark(self.severity));
+                    ui.label(RichText::new(mark(self.severity)).color(color).strong());
                     let width = ui.available_width() - 28.0;
                     let text = match self.times {
                         1 => self.text.clone(),
@@ -161,14 +162,15 @@ impl Message {
                     };
                     ui.vertical(|ui| {
                         ui.set_width(width);
-                        let label = ui.add(Label::new(text).wrap());
+                        let label = ui.add(Label::new(&text).wrap());
                         label.ctx.accesskit_node_builder(label.id, |node| {
                             let urgent = self.severity == Severity::Error;
                             node.set_role(if urgent { Role::Alert } else { Role::Status });
                             node.set_live(if urgent { Live::Assertive } else { Live::Polite });
+                            node.set_label(text);
                         });
                     });
-                    let close = ui.add(Button::new("✖").frame(false));
+                    let close = ui.add(Button::new("×").frame(false));
                     close
                         .accessible_name(language.say(DISMISS))
                         .on_hover_text(language.say(DISMISS))
@@ -182,8 +184,8 @@ impl Message {
 
 const fn mark(severity: Severity) -> &'static str {
     match severity {
-        Severity::Info => "ℹ",
-        Severity::Warning | Severity::Error => "⚠",
+        Severity::Info => "i",
+        Severity::Warning | Severity::Error => "!",
     }
 }
 
@@ -206,18 +208,20 @@ pub fn show_faults(
     let mut dismissed = false;
     frame.inner_margin(Margin::symmetric(12, 8)).show(ui, |ui| {
         ui.horizontal(|ui| {
-            let title = format!("{} {} {}", mark(Severity::Error), source.title(), language.say(CANNOT));
-            let title = ui.label(RichText::new(title).color(color).strong());
+            let text = format!("{} {}", source.title(), language.say(CANNOT));
+            let title = ui.label(RichText::new(&text).color(color).strong());
             title.ctx.accesskit_node_builder(title.id, |node| {
                 node.set_role(Role::Alert);
                 node.set_live(Live::Assertive);
+                node.set_label(text);
             });
             if ui.button(language.say(RELOAD)).clicked() {
                 actions.push(Action::Open(source.clone()));
             }
             dismissed = ui.button(language.say(DISMISS)).clicked();
         });
-        ScrollArea::vertical().max_height(FAULTS_HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
+        let area = ScrollArea::vertical().max_height(FAULTS_HEIGHT).min_scrolled_height(FAULTS_HEIGHT);
+        area.auto_shrink([false, true]).show(ui, |ui| {
             for fault in faults {
                 ui.add_space(4.0);
                 show_fault(ui, fault, language);
@@ -289,8 +293,8 @@ mod tests {
         for (language, dismiss) in [(Language::English, "Dismiss"), (Language::French, "Fermer")] {
             let mut messages = Messages::default();
             messages.error("not saved");
-            let mut window = Harness::new_ui_state(
-                move |ui, messages: &mut Messages| messages.show(ui.ctx(), language),
+            let mut window = crate::theme::test_window([600.0, 400.0]).build_ui_state(
+                move |ui, messages: &mut Messages| messages.show(ui.ctx(), ui.max_rect(), language),
                 messages,
             );
             window.run();
@@ -317,7 +321,7 @@ mod tests {
             Diagnostic::new("bunny.ply", "is missing"),
         ];
         let source = Source::File("scene.yaml".into());
-        Harness::new_ui_state(
+        crate::theme::test_window([600.0, 400.0]).build_ui_state(
             move |ui, state: &mut Faults| {
                 state.dismissed |= show_faults(ui, &source, &faults, language, &mut state.actions);
             },

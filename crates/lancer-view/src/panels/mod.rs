@@ -12,3 +12,4 @@ pub mod palette;
 pub mod scene_tree;
 mod scenes;
 pub mod settings;
+pub mod shortcuts;

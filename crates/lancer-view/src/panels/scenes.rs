@@ -2,7 +2,7 @@
 
 use crate::{Phrase, Source};
 use lancer_gallery::{BuiltinScene, SCENES};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A heading over the built-in scenes.
 pub(super) const BUILTIN: Phrase = Phrase::new("Built-in scenes", "Scènes intégrées");
@@ -13,11 +13,6 @@ pub(super) const RECENT: Phrase = Phrase::new("Recent files", "Fichiers récents
 /// The built-in scenes.
 pub(super) fn builtin_scenes() -> impl Iterator<Item = &'static dyn BuiltinScene> {
     SCENES.iter().copied()
-}
-
-/// The files opened last, as sources.
-pub(super) fn recent_files(recent: &[PathBuf]) -> impl Iterator<Item = Source> {
-    recent.iter().map(|path| Source::File(path.clone()))
 }
 
 /// What a source is, in a line.

@@ -6,7 +6,7 @@ use super::state::{FilePicker, Outcome};
 use crate::{Action, Language, Phrase};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Align, Button, Context, Id, Key, Layout, Modal, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
+    Align, Button, Context, Id, Key, Layout, Modal, Modifiers, Rect, RichText, ScrollArea, TextEdit, Ui, vec2,
 };
 
 const WIDTH: f32 = 680.0;
@@ -27,13 +27,14 @@ impl FilePicker {
     pub fn show(&mut self, ctx: &Context, language: Language, actions: &mut Vec<Action>) -> bool {
         let mut outcome = self.poll();
         let mut is_closed = false;
-        let modal = Modal::new(Id::new("file picker")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("file picker")).show(ctx, |ui| {
             ui.set_width(WIDTH.min(ctx.content_rect().width() - 32.0));
             ui.heading(language.say(self.purpose.title()));
             ui.add_space(4.0);
             let moved = self.take_keys(ui);
             self.directory_line(ui, language);
-            ui.horizontal_top(|ui| {
+            let size = vec2(ui.available_width(), LIST_HEIGHT);
+            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Min), |ui| {
                 self.places_list(ui, language);
                 ui.separator();
                 self.entries_list(ui, moved, language);
@@ -45,15 +46,15 @@ impl FilePicker {
                 is_closed = self.buttons(ui, language);
             }
         });
-        match outcome {
-            Outcome::Picked(path) => {
-                actions.push(self.action(path));
-                false
-            }
-            // Escape answers the question first.
-            Outcome::Pending if modal.should_close() && self.to_replace.take().is_some() => true,
-            Outcome::Pending => !is_closed && !modal.should_close(),
+        if let Outcome::Picked(path) = outcome {
+            actions.push(self.action(path));
+            return false;
         }
+        if modal.should_close() {
+            // Escape answers the question first.
+            return self.to_replace.take().is_some();
+        }
+        !is_closed
     }
 
     /// Takes the keys that move, before the text field has them. Returns whether the selection moved.
@@ -131,14 +132,21 @@ impl FilePicker {
                 if shown.is_empty() && !self.is_waiting() {
                     ui.weak(language.say(EMPTY));
                 }
+                if let Some(selected) = self.selected.filter(|_| moved) {
+                    // It may be one of the rows that are not drawn.
+                    let below =
+                        (selected as f32 - rows.start as f32) * (row_height + ui.spacing().item_spacing.y);
+                    let corner = ui.max_rect().left_top() + vec2(0.0, below);
+                    ui.scroll_to_rect(Rect::from_min_size(corner, vec2(1.0, row_height)), None);
+                }
                 for (i, entry) in shown.iter().enumerate().skip(rows.start).take(rows.len()) {
                     let is_selected = self.selected == Some(i);
-                    let (icon, note) = if entry.is_directory {
-                        ("📁", String::new())
+                    let (shown, note) = if entry.is_directory {
+                        (RichText::new(format!("{}/", entry.name)).strong(), String::new())
                     } else {
-                        ("📄", size_text(entry.bytes, language))
+                        (RichText::new(&entry.name), size_text(entry.bytes, language))
                     };
-                    let button = Button::selectable(is_selected, format!("{icon} {}", entry.name))
+                    let button = Button::selectable(is_selected, shown)
                         .right_text(RichText::new(note).weak())
                         .truncate()
                         .min_size(vec2(ui.available_width(), row_height));
@@ -157,7 +165,6 @@ impl FilePicker {
                 ui.weak(language.say(CUT));
             }
         });
-        let _ = moved;
         if let Some(i) = clicked {
             self.select(i);
         }
@@ -173,13 +180,13 @@ impl FilePicker {
             .desired_width(f32::INFINITY)
             .margin(vec2(8.0, 6.0));
         let field = ui.add(field).accessible_name(language.say(PATH_HINT));
-        if ui.memory(|memory| memory.focused().is_none()) {
-            field.request_focus();
-        }
         if field.changed() {
             self.edited();
         }
         let enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if ui.memory(|memory| memory.focused().is_none()) {
+            field.request_focus();
+        }
         if let Some(fault) = &self.fault {
             ui.colored_label(ui.visuals().error_fg_color, fault_text(fault, language));
         }
@@ -305,7 +312,7 @@ mod tests {
         let places = vec![Place { name: None, path: directory.join("more") }];
         let picker = FilePicker::new(purpose, directory, name, places, || {});
         let state = State { picker: Some(picker), language, actions: Vec::new() };
-        let mut window = Harness::builder().with_size([900.0, 640.0]).build_ui_state(
+        let mut window = crate::theme::test_window([900.0, 640.0]).with_step_dt(1.0 / 60.0).build_ui_state(
             |ui, state: &mut State| {
                 if let Some(picker) = &mut state.picker
                     && !picker.show(ui.ctx(), state.language, &mut state.actions)

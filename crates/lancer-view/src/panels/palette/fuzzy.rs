@@ -14,7 +14,7 @@ pub(super) fn score(query: &str, text: &str) -> Option<i32> {
         total += score_word(word, &text, &letters)?;
     }
     // Of two that fit alike, the shorter one holds less that was not asked for.
-    Some(total - i32::try_from(letters.len()).unwrap_or(i32::MAX / 2) / 8)
+    Some(total * LENGTH_SHARE - i32::try_from(letters.len()).unwrap_or(i32::MAX / 2))
 }
 
 /// What a word of the query is worth. Only their order counts, and that three lucky letters are less than one
@@ -23,6 +23,9 @@ const STARTS_TEXT: i32 = 120;
 const STARTS_WORD: i32 = 100;
 const WITHIN: i32 = 60;
 const SCATTERED: i32 = 10;
+
+/// How many letters too many are worth a point: only texts that fit alike are told apart by their lengths.
+const LENGTH_SHARE: i32 = 8;
 
 fn score_word(word: &str, text: &str, letters: &[char]) -> Option<i32> {
     if text.starts_with(word) {

@@ -62,8 +62,8 @@ impl Entry {
 
     /// How well a query fits it: its name, less so its name in another language or what it does.
     fn score(&self, query: &str, context: &CommandContext, language: Language) -> Option<i32> {
-        const OTHER_LANGUAGE: i32 = 30;
-        const DESCRIPTION: i32 = 50;
+        const OTHER_LANGUAGE: i32 = 240;
+        const DESCRIPTION: i32 = 400;
         let by_name = fuzzy::score(query, &self.label(context, language));
         let elsewhere = match self {
             Self::Command(command) => {
@@ -116,7 +116,7 @@ impl Palette {
         language: Language,
         actions: &mut Vec<Action>,
     ) -> bool {
-        let id = Id::new("command palette");
+        let id = Id::unique("command palette");
         let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 64.0));
         let mut chosen = None;
         let modal = Modal::new(id).area(area).show(ctx, |ui| {
@@ -180,8 +180,9 @@ impl Palette {
             for (i, entry) in entries.iter().enumerate() {
                 let label = entry.label(view.commands, language);
                 let is_selected = i == self.selected;
+                let note = RichText::new(entry.note(language));
                 let button = Button::selectable(is_selected, label.as_str())
-                    .right_text(RichText::new(entry.note(language)).weak())
+                    .right_text(if is_selected { note } else { note.weak() })
                     .min_size(vec2(ui.available_width(), 0.0));
                 let row = ui.add(button).accessible_name(label);
                 row.ctx.accesskit_node_builder(row.id, |node| {
@@ -258,7 +259,7 @@ mod tests {
 
     fn window(language: Language) -> Harness<'static, State> {
         let state = State { palette: Some(Palette::default()), language, actions: Vec::new() };
-        Harness::builder().with_size([900.0, 600.0]).build_ui_state(
+        crate::theme::test_window([900.0, 600.0]).build_ui_state(
             |ui, state: &mut State| {
                 let context = context();
                 let view = PaletteView { commands: &context, recent: &[] };

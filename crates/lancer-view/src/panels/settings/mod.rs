@@ -127,7 +127,9 @@ fn render_button(ui: &mut Ui, context: &CommandContext, language: Language, acti
     let button = Button::new(text).min_size(size).fill(selection.bg_fill);
     let keys = command.shortcuts().iter().map(|keys| crate::commands::shortcut_text(keys, language));
     let tip = format!("{} ({})", language.say(command.description()), keys.collect::<Vec<_>>().join(", "));
-    if ui.add_enabled(command.is_enabled(context), button).on_hover_text(tip).clicked() {
-        actions.push(Action::Command(command));
-    }
+    ui.vertical_centered_justified(|ui| {
+        if ui.add_enabled(command.is_enabled(context), button).on_hover_text(tip).clicked() {
+            actions.push(Action::Command(command));
+        }
+    });
 }

@@ -98,7 +98,7 @@ pub(super) const BACKGROUND: Parameter = parameter(
 );
 
 pub(super) const OCCLUSION: Parameter = parameter(
-    ("Use", "Calculer"),
+    ("Compute", "Calculer"),
     (
         "c_a: how much of the surroundings is open, which weighs the ambient light. Off, it is 1.",
         "c_a : la part des alentours qui est dégagée, et qui pondère la lumière ambiante. Sans ce calcul, 1.",

@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, view: &SettingsView, language: Language, actions
 }
 
 /// Room for all built-in scenes and some files, in points.
-const SCENE_LIST_HEIGHT: f32 = 480.0;
+const SCENE_LIST_HEIGHT: f32 = 600.0;
 
 /// All that can be opened; what is chosen.
 fn list(ui: &mut Ui, current: Option<&Source>, view: &SettingsView, language: Language) -> Option<Action> {

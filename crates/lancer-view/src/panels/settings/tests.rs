@@ -34,7 +34,7 @@ fn window_of(name: &str, language: Language) -> Harness<'static, World> {
         context: CommandContext { has_document: true, ..CommandContext::default() },
         actions: Vec::new(),
     };
-    Harness::builder().with_size([320.0, 1100.0]).build_ui_state(
+    crate::theme::test_window([320.0, 1100.0]).build_ui_state(
         |ui, world: &mut World| {
             let camera = world.document.scene().camera;
             let recent = [PathBuf::from("/models/bunny.ply")];
@@ -142,7 +142,7 @@ fn terms_are_switched_in_both_languages() {
 #[test]
 fn occlusion_that_is_turned_off_and_on_has_its_samples_again() {
     for (language, [on, samples, distance]) in [
-        (Language::English, ["Use", "Samples", "Distance"]),
+        (Language::English, ["Compute", "Samples", "Distance"]),
         (Language::French, ["Calculer", "Échantillons", "Distance"]),
     ] {
         let mut window = window_of("primitives", language);
