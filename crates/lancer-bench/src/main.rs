@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p lancer-bench -- speed` prints build times and rays per second by kind; `... -- embree`
 //! compares them with Embree's; `... -- convergence` plots the error of ambient occlusion against the number of
-//! its samples; `... -- peers` times whole processes against other renderers. README.md says what to install.
+//! its samples; `... -- peers` times whole processes against other renderers; `... -- window` watches
+//! the window. README.md says what to install.
 
 mod convergence;
 mod embree;
@@ -13,6 +14,7 @@ mod record;
 mod speed;
 mod subjects;
 mod versus;
+mod window;
 
 use clap::{Args, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
@@ -80,6 +82,8 @@ enum Command {
     },
     /// Lancer's program against POV-Ray, Tachyon, Mitsuba and Cycles on matched scenes.
     Peers(peers::Plan),
+    /// How soon the window shows, moves and sharpens its picture, and what it uses at rest.
+    Window(window::Plan),
 }
 
 /// What all comparisons with Embree ask for.
@@ -146,5 +150,6 @@ fn main() -> Result<(), Failure> {
         Command::FirstLight { versus } => versus::measure_first_light(&versus.plan(Vec::new())),
         Command::Convergence { output } => convergence::measure(&output),
         Command::Peers(plan) => peers::measure(&plan),
+        Command::Window(plan) => window::measure(&plan),
     }
 }

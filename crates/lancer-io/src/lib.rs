@@ -13,4 +13,4 @@ pub mod resolver;
 pub mod scene_file;
 pub mod showcase;
 
-pub use load::{LoadOptions, Loaded, SCENE_EXTENSIONS, load};
+pub use load::{LoadOptions, Loaded, SCENE_EXTENSIONS, is_scene_file, load};

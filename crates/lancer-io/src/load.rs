@@ -5,7 +5,7 @@ use crate::image::load_texture;
 use crate::limits::Limits;
 use crate::model::{self, ModelFormat};
 use crate::resolver::Resolver;
-use crate::scene_file::{self, Assets, Override};
+use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
 use lancer_core::scene::{ImageTexture, Scene};
 use std::path::{Path, PathBuf};
@@ -29,6 +29,15 @@ pub struct Loaded {
     pub scene: Scene,
     /// What is odd but no error, in the order of the places.
     pub warnings: Vec<Diagnostic>,
+    /// Which of its parts the scene file itself holds; none where it is no scene file.
+    pub origins: Origins,
+}
+
+impl From<Scene> for Loaded {
+    /// A scene that comes from no file.
+    fn from(scene: Scene) -> Self {
+        Self { scene, warnings: Vec::new(), origins: Origins::default() }
+    }
 }
 
 /// The extensions of scene files.
@@ -52,10 +61,11 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     let warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
     scene_file::apply_overrides(&mut scene, &options.overrides)?;
-    Ok(Loaded { scene, warnings })
+    Ok(Loaded { warnings, ..Loaded::from(scene) })
 }
 
-fn is_scene_file(path: &Path) -> bool {
+/// Whether a file is a scene file, by its name.
+pub fn is_scene_file(path: &Path) -> bool {
     path.extension()
         .is_some_and(|found| SCENE_EXTENSIONS.iter().any(|known| found.eq_ignore_ascii_case(known)))
 }

@@ -96,11 +96,13 @@ pub struct Panels {
     pub renders: bool,
     /// The line at the bottom.
     pub status: bool,
+    /// The line that says what the mouse does.
+    pub hints: bool,
 }
 
 impl Default for Panels {
     fn default() -> Self {
-        Self { tree: true, parameters: true, renders: true, status: true }
+        Self { tree: true, parameters: true, renders: true, status: true, hints: true }
     }
 }
 

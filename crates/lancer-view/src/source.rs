@@ -26,7 +26,7 @@ impl Source {
             Self::Builtin(builtin) => {
                 let mut scene = builtin.build();
                 lancer_io::scene_file::apply_overrides(&mut scene, &options.overrides)?;
-                Ok(Loaded { scene, warnings: Vec::new() })
+                Ok(scene.into())
             }
         }
     }

@@ -6,6 +6,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args as ClapArgs, Parser, Subcommand};
 use lancer_core::accel::{Accelerator, KdTree};
+use lancer_core::film::Tone;
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
 use lancer_core::simd::InstructionSet;
@@ -116,6 +117,18 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "D", allow_negative_numbers = true)]
     pub(crate) ao_distance: Option<f64>,
 
+    /// Let light through everything: nothing casts a shadow
+    #[arg(long)]
+    pub(crate) no_shadows: bool,
+
+    /// Trace no mirror images
+    #[arg(long)]
+    pub(crate) no_reflection: bool,
+
+    /// Trace nothing through glass
+    #[arg(long)]
+    pub(crate) no_refraction: bool,
+
     /// One of the scene's named cameras
     #[arg(long, value_name = "NAME")]
     pub(crate) camera: Option<String>,
@@ -125,8 +138,8 @@ pub(crate) struct PictureArgs {
     pub(crate) region: Option<Region>,
 
     /// Make the picture brighter (or darker, below 0) by EV stops
-    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure, default_value_t = 0.0, hide_default_value = true)]
-    pub(crate) exposure: f64,
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure)]
+    pub(crate) exposure: Option<f64>,
 }
 
 /// What decides how long it takes, and nothing in the pixels.
@@ -220,10 +233,6 @@ pub(crate) struct CompletionsArgs {
 /// More threads than any machine has cores, and few enough that their stacks fit in memory.
 const MAX_THREADS: i64 = 1024;
 
-/// The most stops of exposure: 2 to this power, and its inverse, times any radiance worth showing is still an
-/// `f32`. Beyond 127 black would become 0 times infinity.
-const MAX_EXPOSURE: f64 = 100.0;
-
 fn accelerator_parser() -> impl TypedValueParser<Value = Accelerator> {
     PossibleValuesParser::new(Accelerator::ALL.map(Accelerator::name)).map(|name| {
         let named = |accelerator: &Accelerator| accelerator.name() == name;
@@ -248,11 +257,8 @@ fn parse_region(text: &str) -> Result<Region, String> {
 
 fn parse_exposure(text: &str) -> Result<f64, String> {
     let stops = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
-    if stops.abs() <= MAX_EXPOSURE {
-        Ok(stops)
-    } else {
-        Err(format!("must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE}"))
-    }
+    let most = Tone::MAX_EXPOSURE;
+    if stops.abs() <= most { Ok(stops) } else { Err(format!("must be between -{most} and {most}")) }
 }
 
 #[cfg(test)]

@@ -24,7 +24,6 @@ pub(crate) struct Job {
     pub(crate) compile: CompileOptions,
     pub(crate) threads: usize,
     pub(crate) tile_size: u32,
-    pub(crate) tone: Tone,
     pub(crate) destination: Destination,
     pub(crate) json: bool,
     pub(crate) quiet: bool,
@@ -36,6 +35,7 @@ pub(crate) struct Job {
 pub(crate) struct Shot {
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
+    pub(crate) tone: Tone,
     pub(crate) region: Option<Region>,
 }
 
@@ -61,7 +61,6 @@ impl Job {
             compile: compile_options(&work),
             threads: work.threads.map_or_else(all_cores, |threads| threads as usize),
             tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
-            tone: Tone { exposure: picture.exposure },
             destination,
             json,
             quiet,
@@ -88,7 +87,8 @@ impl Job {
             let Settings { width, height, .. } = settings;
             return Err(usage(RenderError::Region { region, width, height }));
         }
-        let shot = Shot { camera, settings, region };
+        let tone = Tone { exposure: self.picture.exposure.unwrap_or(scene.tone.exposure) };
+        let shot = Shot { camera, settings, tone, region };
         let tiles = shot.tiles(self.tile_size);
         if tiles > MAX_TILES {
             return Err(Error::usage(format!(
@@ -151,7 +151,9 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
             samples: flags.ao.unwrap_or(scene.ao.samples),
             distance: flags.ao_distance.unwrap_or(scene.ao.distance),
         },
-        ..scene
+        shadows: scene.shadows && !flags.no_shadows,
+        reflection: scene.reflection && !flags.no_reflection,
+        refraction: scene.refraction && !flags.no_refraction,
     }
 }
 

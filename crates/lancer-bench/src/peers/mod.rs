@@ -125,7 +125,7 @@ const SUPERSAMPLED: &str =
 
 #[expect(clippy::print_stdout, reason = "the tables are what the command is for")]
 pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
-    let lancer = lancer_program(plan)?;
+    let lancer = lancer_program(plan.lancer.as_deref())?;
     let threads = if plan.threads == "all" { std::thread::available_parallelism()?.get() } else { 1 };
     let pinning = Pinning::choose(threads);
     let peers = installed(&plan.renderers)?;
@@ -239,9 +239,10 @@ fn picture_named(name: &str, models: &Path) -> Result<Option<Picture>, Failure> 
     Ok(Some(matched::with_occlusion(clear, samples)))
 }
 
-fn lancer_program(plan: &Plan) -> Result<PathBuf, Failure> {
+/// Lancer's program: the one that is named, or else the one beside this program.
+pub(crate) fn lancer_program(named: Option<&Path>) -> Result<PathBuf, Failure> {
     let beside = std::env::current_exe()?.with_file_name(format!("lancer{}", std::env::consts::EXE_SUFFIX));
-    let program = plan.lancer.clone().unwrap_or(beside);
+    let program = named.map_or(beside, Path::to_owned);
     if program.exists() {
         Ok(program)
     } else {

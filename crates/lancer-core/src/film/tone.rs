@@ -13,6 +13,10 @@ pub struct Tone {
 }
 
 impl Tone {
+    /// The most stops of exposure, and of darkening: 2 to this power, and its inverse, times any radiance worth
+    /// showing is still an `f32`. Beyond 127 black would become 0 times infinity.
+    pub const MAX_EXPOSURE: f64 = 100.0;
+
     /// The image with the exposure applied, still linear and unclamped.
     pub fn expose(&self, image: &Image) -> Image {
         let factor = portable::exp2(self.exposure) as f32;

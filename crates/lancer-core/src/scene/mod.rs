@@ -141,6 +141,11 @@ impl Scene {
         &self.nodes
     }
 
+    /// The ids of all nodes, in their order.
+    pub fn node_ids(&self) -> impl Iterator<Item = NodeId> + use<> {
+        (0..self.nodes.len() as u32).map(NodeId)
+    }
+
     /// The nodes at the top of the tree, in drawing order.
     pub fn roots(&self) -> &[NodeId] {
         &self.roots

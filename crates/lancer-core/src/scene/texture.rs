@@ -87,6 +87,11 @@ impl ImageTexture {
         self.height
     }
 
+    /// The rows, top row first. Shape: `[height * width][3]`, sRGB-encoded.
+    pub fn texels(&self) -> &[[u8; 3]] {
+        &self.texels
+    }
+
     /// The colour at `uv`, linear: bilinear between texel centres, repeated beyond [0, 1).
     ///
     /// (0, 0) is the lower left corner of the image and (1, 1) the upper right one.

@@ -15,7 +15,9 @@
 //! lowest object, and there of the lowest primitive.
 
 mod boxes;
+mod check;
 mod compile;
+mod error;
 mod fan;
 mod geometry;
 mod intersection;
@@ -23,7 +25,8 @@ mod media;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{CompileControl, CompileError, CompileOptions};
+pub use compile::{CompileControl, CompileOptions};
+pub use error::CompileError;
 pub use intersection::Intersection;
 pub use media::Media;
 pub(crate) use media::Touching;
@@ -149,6 +152,11 @@ impl World {
     /// All objects, in the order of their ids.
     pub fn objects(&self) -> &[Object] {
         &self.objects
+    }
+
+    /// The ids of all objects, in their order.
+    pub fn object_ids(&self) -> impl Iterator<Item = ObjectId> + use<> {
+        (0..self.objects.len() as u32).map(ObjectId)
     }
 
     /// An object.

@@ -8,6 +8,7 @@ use ::exr::prelude::{
     Text, Vec2, WritableImage,
 };
 use lancer_core::film::{Image, to_srgb8};
+use lancer_core::scene::ImageTexture;
 use std::io::{self, Cursor, Write};
 use std::path::Path;
 
@@ -81,6 +82,21 @@ pub fn write_png(image: &Image, metadata: &Metadata, out: impl Write) -> io::Res
     encoder.add_text_chunk("Software".to_owned(), metadata.software.clone())?;
     let mut writer = encoder.write_header()?;
     writer.write_image_data(to_srgb8(image).as_flattened())?;
+    writer.finish()?;
+    Ok(())
+}
+
+/// Writes a texture as a PNG of its 8-bit sRGB texels, which [`load_texture`](super::load_texture) reads back.
+///
+/// # Errors
+/// `out` fails.
+pub fn write_texture(texture: &ImageTexture, out: impl Write) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, texture.width(), texture.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(texture.texels().as_flattened())?;
     writer.finish()?;
     Ok(())
 }

@@ -12,6 +12,8 @@ mod report;
 mod text;
 mod triangulate;
 
+pub use ply::write_ply;
+
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::resolver::Resolver;
 use lancer_core::geometry::{Bounds, DVec3, Transform};

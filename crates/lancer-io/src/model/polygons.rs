@@ -104,6 +104,25 @@ impl Polygons {
         Ok(Meshes { meshes, origin })
     }
 
+    /// The one mesh that was written as these triangles: its vertices are the positions, in their order, each with
+    /// the normal and the texture coordinates of the same index. What is no such mesh is read as any other.
+    ///
+    /// # Errors
+    /// See [`PolygonError`].
+    pub(super) fn into_mesh_as_stored(self) -> Result<Meshes, PolygonError> {
+        if self.corners.len() != 3 * self.faces.len() {
+            return self.into_meshes();
+        }
+        let corners = self.corners.as_chunks::<3>().0;
+        let mesh = Mesh::new(MeshData {
+            positions: self.positions.iter().map(|position| position.to_array().map(|x| x as f32)).collect(),
+            normals: self.normals,
+            uvs: self.uvs,
+            indices: corners.iter().map(|corners| corners.map(|corner| corner.position)).collect(),
+        })?;
+        Ok(Meshes { meshes: vec![(0, mesh)], origin: DVec3::ZERO })
+    }
+
     /// For each face the part that it belongs to.
     fn parts_of_faces(&self) -> Vec<Part> {
         let has_normal = |corner: &Corner| {

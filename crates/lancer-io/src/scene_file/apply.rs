@@ -101,7 +101,8 @@ impl Edits<'_> {
             scene.lights = lights(&file.lights);
         }
         if self.touch(&["render"]) {
-            scene.settings = file.render.0;
+            scene.settings = file.render.settings;
+            scene.tone = file.render.tone;
         }
     }
 

@@ -12,18 +12,26 @@
 mod apply;
 mod assets;
 mod build;
+mod changes;
 mod deserialize;
 mod export;
 mod model;
+mod origins;
 mod overrides;
+mod patch;
 mod report;
 mod schema;
 mod syntax;
+mod write;
 
 pub use apply::apply_overrides;
 pub use assets::{Assets, Model};
+pub use changes::{Changes, Unsaved, changes};
+pub use origins::Origins;
 pub use overrides::{Override, OverrideError};
+pub use patch::patch;
 pub use schema::json_schema;
+pub use write::write_whole;
 
 use crate::Loaded;
 use crate::diagnostics::LoadError;
@@ -65,7 +73,8 @@ pub fn read(
     if !built.problems.is_empty() {
         return Err(failed(built.problems));
     }
-    Ok(Loaded { scene: built.scene, warnings: report.warnings(built.warnings) })
+    let origins = Origins::of(&file, &built.scene);
+    Ok(Loaded { scene: built.scene, warnings: report.warnings(built.warnings), origins })
 }
 
 /// The edited tree of a file, and the problems that left one.

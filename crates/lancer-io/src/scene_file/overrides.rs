@@ -50,6 +50,11 @@ impl fmt::Display for Override {
 }
 
 impl Override {
+    /// An override by its parts: keys, and items by their indices; `value` is YAML.
+    pub(crate) fn new(path: Vec<String>, value: String) -> Self {
+        Self { path, value }
+    }
+
     /// The first key of the path.
     pub(crate) fn section(&self) -> &str {
         &self.path[0]

@@ -11,7 +11,7 @@ mod tests;
 pub use edit::{Edit, EditKind};
 
 use crate::Source;
-use lancer_core::scene::Scene;
+use lancer_core::scene::{NodeId, Scene};
 use std::mem;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -52,14 +52,15 @@ struct Step {
 #[derive(Clone, Debug)]
 enum Change {
     Edit(Edit),
-    Revert(Arc<Scene>),
+    /// The whole scene, where more than one of its values changes.
+    Whole(EditKind, Arc<Scene>),
 }
 
 impl Change {
     fn kind(&self) -> EditKind {
         match self {
             Self::Edit(edit) => edit.kind(),
-            Self::Revert(_) => EditKind::Revert,
+            Self::Whole(kind, _) => *kind,
         }
     }
 }
@@ -164,7 +165,7 @@ impl Document {
     fn swap(&mut self, mut step: Step) -> Step {
         match &mut step.change {
             Change::Edit(edit) => edit.swap(Arc::make_mut(&mut self.scene)),
-            Change::Revert(scene) => mem::swap(scene, &mut self.scene),
+            Change::Whole(_, scene) => mem::swap(scene, &mut self.scene),
         }
         mem::swap(&mut step.revision, &mut self.revision);
         step
@@ -212,12 +213,27 @@ impl Document {
     pub fn revert(&mut self) {
         self.end_gesture();
         if self.is_changed() {
-            let step =
-                Step { revision: self.saved_revision, change: Change::Revert(Arc::clone(&self.saved)) };
-            let step = self.swap(step);
-            self.done.push(step);
-            self.undone.clear();
+            self.replace(EditKind::Revert, Arc::clone(&self.saved), self.saved_revision);
         }
+    }
+
+    /// Hides nothing any more, as one step that can be undone.
+    pub fn show_all(&mut self) {
+        self.end_gesture();
+        let is_hidden = |id: &NodeId| self.scene.node(*id).hidden;
+        let hidden = self.scene.node_ids().filter(is_hidden).collect::<Vec<_>>();
+        if !hidden.is_empty() {
+            let mut scene = Scene::clone(&self.scene);
+            hidden.into_iter().for_each(|id| scene.node_mut(id).hidden = false);
+            self.replace(EditKind::Hidden, Arc::new(scene), new_revision());
+        }
+    }
+
+    /// Puts another scene in the place of this one, as one step.
+    fn replace(&mut self, kind: EditKind, scene: Arc<Scene>, revision: u64) {
+        let step = self.swap(Step { revision, change: Change::Whole(kind, scene) });
+        self.done.push(step);
+        self.undone.clear();
     }
 }
 

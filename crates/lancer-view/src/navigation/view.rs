@@ -16,6 +16,10 @@ const WHEEL: f64 = 0.25;
 /// How much more than the box is seen when it is framed: 1 has it touch the edges.
 const FRAME_MARGIN: f64 = 1.05;
 
+/// How far the eye stays before a framed box, in diagonals. With an angle of view so wide that a corner's edges fit
+/// into it, the corner would be the nearest place from which all is seen.
+const FRAME_ROOM: f64 = 0.01;
+
 /// The least distance to the point of interest, in parts of the coordinates. Below it the direction of view is
 /// made of their rounding: here the picture shakes by less than a thousandth of a pixel.
 const NEAREST: f64 = 1e-9;
@@ -190,7 +194,11 @@ impl View {
         };
         let (distance_across, x) = fit(right, vertical * aspect);
         let (distance_up, y) = fit(up, vertical);
-        let distance = if bounds.diagonal() > 0.0 { distance_across.max(distance_up) } else { self.reach() };
+        let nearest_corner = corners.iter().map(|corner| corner.dot(backward)).fold(0.0, f64::max);
+        let distance = match bounds.diagonal() {
+            0.0 => self.reach(),
+            diagonal => distance_across.max(distance_up).max(nearest_corner + FRAME_ROOM * diagonal),
+        };
         let eye = center + right * x + up * y + backward * distance;
         self.moved(eye, frame, center)
     }

@@ -7,6 +7,7 @@ use crate::source::Source;
 use crate::{json, process, terminal};
 use indicatif::{HumanBytes, HumanCount};
 use lancer_core::camera::Camera;
+use lancer_core::film::Tone;
 use lancer_core::geometry::{Bounds, DVec3};
 use lancer_core::scene::{Light, Scene, Settings};
 use lancer_core::world::{CompileOptions, World, WorldStatistics};
@@ -22,7 +23,7 @@ use std::fmt::Write;
 pub(crate) fn run(args: &InfoArgs) -> Result<(), Error> {
     let source = Source::find(Some(&args.file))?;
     let options = LoadOptions { allow_outside: args.access.allow_outside, ..LoadOptions::default() };
-    let Loaded { scene, warnings } = source.load(&options)?;
+    let Loaded { scene, warnings, .. } = source.load(&options)?;
     let world = World::compile(&scene, &CompileOptions::default())
         .map_err(|error| LoadError::from(source.diagnostic(error)))?;
     let info = Info { source: &source, scene: &scene, world: &world, warnings: &warnings };
@@ -52,7 +53,7 @@ impl Info<'_> {
         line("materials", listed(self.scene.materials().iter().map(|material| material.name.as_str())));
         line("lights", listed(self.scene.lights.iter().map(|light| light.name.as_str())));
         line("cameras", listed(cameras(self.scene).map(|(name, _)| name.unwrap_or(""))));
-        line("picture", picture(&self.scene.settings));
+        line("picture", picture(&self.scene.settings, self.scene.tone));
         line("tree", tree(&statistics));
         line("memory", memory(&statistics));
         line("warnings", self.warnings.len().to_string());
@@ -73,7 +74,7 @@ impl Info<'_> {
             materials: self.scene.materials().iter().map(|material| material.name.as_str()).collect(),
             lights: self.scene.lights.iter().map(LightJson::from).collect(),
             cameras: cameras(self.scene).map(CameraJson::from).collect(),
-            picture: self.scene.settings.into(),
+            picture: PictureJson::of(self.scene),
             peak_memory_bytes: process::peak_memory_bytes(),
             warnings: self.warnings.iter().map(json::DiagnosticJson::from).collect(),
         })
@@ -128,13 +129,23 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     told
 }
 
-fn picture(settings: &Settings) -> String {
-    let Settings { width, height, samples, depth, ao, .. } = settings;
+fn picture(settings: &Settings, tone: Tone) -> String {
+    let Settings { width, height, samples, depth, ao, shadows, reflection, refraction } = settings;
     let occlusion = match ao.samples {
         0 => "off".into(),
         samples => format!("{samples} to {}", short(ao.distance)),
     };
-    format!("{width} x {height}, samples {samples}, depth {depth}, ambient occlusion {occlusion}")
+    let mut told =
+        format!("{width} x {height}, samples {samples}, depth {depth}, ambient occlusion {occlusion}");
+    for (name, on) in [("shadows", shadows), ("reflection", reflection), ("refraction", refraction)] {
+        if !on {
+            write!(told, ", no {name}").expect("memory can be written");
+        }
+    }
+    if tone != Tone::default() {
+        write!(told, ", exposure {}", short(tone.exposure)).expect("memory can be written");
+    }
+    told
 }
 
 fn tree(statistics: &WorldStatistics) -> String {
@@ -213,6 +224,10 @@ struct PictureJson {
     samples: u32,
     depth: u32,
     ao: OcclusionJson,
+    shadows: bool,
+    reflection: bool,
+    refraction: bool,
+    exposure: f64,
 }
 
 #[derive(Serialize)]
@@ -221,11 +236,12 @@ struct OcclusionJson {
     distance: f64,
 }
 
-impl From<Settings> for PictureJson {
-    fn from(settings: Settings) -> Self {
-        let Settings { width, height, samples, depth, ao, .. } = settings;
+impl PictureJson {
+    fn of(scene: &Scene) -> Self {
+        let Settings { width, height, samples, depth, ao, shadows, reflection, refraction } = scene.settings;
         let ao = OcclusionJson { samples: ao.samples, distance: ao.distance };
-        Self { width, height, samples, depth, ao }
+        let exposure = scene.tone.exposure;
+        Self { width, height, samples, depth, ao, shadows, reflection, refraction, exposure }
     }
 }
 

@@ -28,7 +28,7 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let mut stages = Stages::default();
 
     let loaded = timed(&mut stages.load, || progress.during("reading", || job.source.load(&job.load)))?;
-    let Loaded { scene, mut warnings } = loaded;
+    let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;
 
@@ -39,7 +39,7 @@ fn run_job(job: &Job) -> Result<(), Error> {
 
     let cancel = CancelToken::default();
     let picture = timed(&mut stages.render, || trace(job, &shot, &world, &cancel, &progress))?;
-    timed(&mut stages.write, || write(job, &picture, &cancel, &progress))?;
+    timed(&mut stages.write, || write(job, &shot, &picture, &cancel, &progress))?;
 
     let late = report::warnings_about(&picture, &world, &shot);
     let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
@@ -67,8 +67,14 @@ fn trace(
     Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
 }
 
-fn write(job: &Job, picture: &Render, cancel: &CancelToken, progress: &Progress) -> Result<(), Error> {
-    progress.during("writing", || job.destination.write(&job.tone.expose(&picture.image), cancel))
+fn write(
+    job: &Job,
+    shot: &Shot,
+    picture: &Render,
+    cancel: &CancelToken,
+    progress: &Progress,
+) -> Result<(), Error> {
+    progress.during("writing", || job.destination.write(&shot.tone.expose(&picture.image), cancel))
 }
 
 fn tell(report: &Report) -> Result<(), Error> {

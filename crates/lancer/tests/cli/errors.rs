@@ -1,6 +1,6 @@
 //! What goes wrong, the exit codes that say so, and that it shows before the long work.
 
-use crate::sandbox::{SCENE, Sandbox};
+use crate::sandbox::{SCENE, Sandbox, text};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -222,10 +222,23 @@ fn mistakes_show_before_the_long_work() {
 }
 
 #[test]
-fn without_a_window_it_is_said_how_to_render() {
+fn without_a_display_it_is_said_how_to_render() {
     let sandbox = Sandbox::new();
     assert!(sandbox.fails(2, "").contains("lancer render"));
     assert!(sandbox.fails(2, "scene.yaml").contains("lancer render scene.yaml"));
     assert!(sandbox.fails(2, "rendr").contains("did you mean `lancer render`"));
     sandbox.fails(3, "nothing.yaml");
+}
+
+/// A display that is named and not there: to be told as an error, and not as a panic.
+#[cfg(all(target_os = "linux", feature = "window"))]
+#[test]
+fn without_its_display_it_is_said_how_to_render() {
+    let sandbox = Sandbox::new();
+    for (variable, display) in [("DISPLAY", ":65000"), ("DISPLAY", "nonsense"), ("WAYLAND_DISPLAY", "none")] {
+        let run = sandbox.lancer(["scene.yaml"]).env(variable, display).output().unwrap();
+        let said = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{variable}={display}: {said}");
+        assert!(said.contains("lancer render scene.yaml"), "{said}");
+    }
 }

@@ -47,9 +47,20 @@ fn info_tells_programs_what_a_scene_holds() {
     assert_eq!(told["cameras"][1]["name"], "top");
     assert_eq!(told["cameras"][1]["fov"], 50.0);
     assert_eq!(told["picture"]["width"], 24);
+    assert_eq!(told["picture"]["shadows"], true);
+    assert_eq!(told["picture"]["exposure"], 0.0);
     let low = told["bounds"]["min"][0].as_f64().unwrap();
     assert!((low - -2.2).abs() < 1e-9, "{low}");
     assert_eq!(told["warnings"], serde_json::json!([]));
+}
+
+#[test]
+fn info_tells_what_the_picture_leaves_out_and_how_bright_it_is() {
+    let sandbox = Sandbox::new();
+    let picture = "render: {shadows: false, refraction: false, exposure: 1.5, ";
+    sandbox.write("scene.yaml", SCENE.replace("render: {", picture));
+    let told = text(&sandbox.ok("info scene.yaml").stdout);
+    assert!(told.contains("ambient occlusion off, no shadows, no refraction, exposure 1.5\n"), "{told}");
 }
 
 #[test]

@@ -11,4 +11,5 @@ mod sandbox;
 #[cfg(unix)]
 mod terminal;
 mod texts;
+mod whole;
 mod work;

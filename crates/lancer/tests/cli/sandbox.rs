@@ -78,9 +78,7 @@ impl Sandbox {
 
     /// The program with its arguments, to be run in the directory.
     pub(crate) fn lancer<S: AsRef<OsStr>>(&self, args: impl IntoIterator<Item = S>) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_lancer"));
-        command.current_dir(self.directory.path()).args(args).env_remove("RUST_BACKTRACE");
-        command
+        Command::from_std(self.process(args))
     }
 
     /// As [`Self::lancer`], for tests that need the running process.
@@ -90,6 +88,8 @@ impl Sandbox {
     ) -> std::process::Command {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lancer"));
         command.current_dir(self.directory.path()).args(args).env_remove("RUST_BACKTRACE");
+        // Nothing here opens a window on the display of whoever runs the tests.
+        ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(|display| command.env_remove(display));
         command
     }
 

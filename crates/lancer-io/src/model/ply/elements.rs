@@ -15,6 +15,8 @@ pub(super) struct Reader<'a> {
     polygons: Polygons,
     /// How many vertices the header promises, and so the file has: indices are held against it.
     vertices: u64,
+    /// Whether normals keep their length.
+    is_as_stored: bool,
     has_normals: bool,
     has_uvs: bool,
     small_faces: usize,
@@ -28,6 +30,7 @@ impl<'a> Reader<'a> {
             limits,
             polygons: Polygons::default(),
             vertices: 0,
+            is_as_stored: false,
             has_normals: false,
             has_uvs: false,
             small_faces: 0,
@@ -40,6 +43,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// The first fault.
     pub(super) fn read(&mut self, header: &Header, values: &mut impl Values) -> Result<(), LoadError> {
+        self.is_as_stored = header.is_as_stored;
         let mut vertex_elements = header.elements.iter().filter(|element| element.name == "vertex");
         if let Some(vertices) = vertex_elements.next() {
             self.survey_vertices(vertices)?;
@@ -116,8 +120,8 @@ impl<'a> Reader<'a> {
     fn push(&mut self, vertex: Vertex) {
         self.polygons.positions.push(vertex.position);
         if self.has_normals {
-            let unit = vertex.normal.normalize_or_zero();
-            self.polygons.normals.push(unit.to_array().map(|x| x as f32));
+            let normal = if self.is_as_stored { vertex.normal } else { vertex.normal.normalize_or_zero() };
+            self.polygons.normals.push(normal.to_array().map(|x| x as f32));
         }
         if self.has_uvs {
             self.polygons.uvs.push(vertex.uv.map(|x| x as f32));

@@ -85,11 +85,16 @@ impl Element {
     }
 }
 
+/// The information by which a file says that its numbers are those of a mesh, to be taken as they are.
+pub(super) const AS_STORED: &str = "lancer: numbers as stored";
+
 /// What a PLY file says about itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Whether [`AS_STORED`] stands in it.
+    pub(super) is_as_stored: bool,
     /// Where the body begins.
     pub(super) body: usize,
 }
@@ -145,11 +150,13 @@ impl<'a> Parser<'a> {
     fn parse(&mut self, first: Word<'a>) -> Result<Header, LoadError> {
         let mut encoding = None;
         let mut elements = Vec::<Element>::new();
+        let mut is_as_stored = false;
         while let Some(keyword) = self.cursor.first_word() {
             match keyword.bytes {
-                b"comment" | b"obj_info" => {
+                b"comment" => {
                     self.cursor.rest_of_line();
                 }
+                b"obj_info" => is_as_stored |= self.cursor.rest_of_line().bytes == AS_STORED.as_bytes(),
                 b"format" => encoding = Some(self.encoding(keyword)?),
                 b"element" => elements.push(self.element(keyword)?),
                 b"property" => {
@@ -164,7 +171,8 @@ impl<'a> Parser<'a> {
                         return Err(self.fault(keyword, "the header has no `format` line"));
                     };
                     let body = keyword.offset + keyword.bytes.len();
-                    return Ok(Header { encoding, elements, body: self.after_newline(first, body) });
+                    let body = self.after_newline(first, body);
+                    return Ok(Header { encoding, elements, is_as_stored, body });
                 }
                 other => {
                     let message = format!("`{}` is not known in a PLY header", decode(other));

@@ -14,6 +14,9 @@
 mod elements;
 mod header;
 mod values;
+mod write;
+
+pub use write::write_ply;
 
 use self::elements::Reader;
 use self::header::{Encoding, Header};
@@ -42,7 +45,8 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
     }?;
     let (polygons, warnings) = reader.finish()?;
 
-    let meshes = polygons.into_meshes().map_err(|error| LoadError::new(path, error.to_string()))?;
+    let meshes = if header.is_as_stored { polygons.into_mesh_as_stored() } else { polygons.into_meshes() };
+    let meshes = meshes.map_err(|error| LoadError::new(path, error.to_string()))?;
     let part = |(_, mesh)| ModelPart { name: name_of(path), mesh: Arc::new(mesh), material: None };
     Ok(Model {
         name: name_of(path),

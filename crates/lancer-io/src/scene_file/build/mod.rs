@@ -107,7 +107,8 @@ fn scene_without_objects(file: &SceneFile) -> Scene {
     scene.ambient = file.ambient.0;
     scene.background = file.background.0;
     scene.lights = lights(&file.lights);
-    scene.settings = file.render.0;
+    scene.settings = file.render.settings;
+    scene.tone = file.render.tone;
     scene
 }
 

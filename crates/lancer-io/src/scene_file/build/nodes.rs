@@ -46,6 +46,7 @@ impl<'a> Builder<'a> {
             name: object.name.clone(),
             transform: self.transform(object),
             material,
+            hidden: object.hidden,
             ..Node::default()
         };
         match &object.shape {

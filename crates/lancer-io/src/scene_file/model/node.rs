@@ -28,6 +28,8 @@ pub(crate) struct NodeFile {
     pub(crate) transform: Option<Spanned<Vec<Spanned<Step>>>>,
     /// The material of this object and of all below it that name none; without one, the parent's.
     pub(crate) material: Option<Spanned<MaterialReference>>,
+    /// Whether neither this object nor anything below it is drawn; default false.
+    pub(crate) hidden: bool,
 }
 
 impl NodeFile {

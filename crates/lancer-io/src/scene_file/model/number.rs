@@ -1,5 +1,6 @@
 //! Numbers that are checked as they are read, so that nothing later has to.
 
+use lancer_core::film::Tone;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use std::borrow::Cow;
@@ -32,6 +33,9 @@ pub(crate) struct Fraction;
 
 /// Between 0 and 180, both excluded.
 pub(crate) struct FieldOfView;
+
+/// From -100 to 100 stops, both included: [`Tone::MAX_EXPOSURE`].
+pub(crate) struct Exposure;
 
 impl Range for Finite {
     const WORDS: &'static str = "a finite number";
@@ -90,6 +94,18 @@ impl Range for FieldOfView {
 
     fn schema() -> Schema {
         json_schema!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180 })
+    }
+}
+
+impl Range for Exposure {
+    const WORDS: &'static str = "a number from -100 to 100";
+
+    fn holds(number: f64) -> bool {
+        number.abs() <= Tone::MAX_EXPOSURE
+    }
+
+    fn schema() -> Schema {
+        json_schema!({ "type": "number", "minimum": -Tone::MAX_EXPOSURE, "maximum": Tone::MAX_EXPOSURE })
     }
 }
 

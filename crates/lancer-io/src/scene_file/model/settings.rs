@@ -1,9 +1,10 @@
 //! Cameras, lights and render settings.
 
 use super::channels::Channels;
-use super::number::{FieldOfView, NotNegative, Number, Positive, Whole};
+use super::number::{Exposure, FieldOfView, NotNegative, Number, Positive, Whole};
 use super::transform::Vector;
 use lancer_core::camera::{Camera, CameraError};
+use lancer_core::film::Tone;
 use lancer_core::scene::{AmbientOcclusion, Settings, SettingsError};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -63,7 +64,10 @@ pub(crate) struct LightFile {
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(try_from = "RenderFields")]
 #[schemars(with = "RenderFields", rename = "Render")]
-pub(crate) struct RenderFile(pub(crate) Settings);
+pub(crate) struct RenderFile {
+    pub(crate) settings: Settings,
+    pub(crate) tone: Tone,
+}
 
 type Side = Whole<1, { Settings::MAX_SIDE as u64 }>;
 type Samples = Whole<1, { Settings::MAX_SAMPLES as u64 }>;
@@ -84,6 +88,14 @@ struct RenderFields {
     depth: Depth,
     /// Ambient occlusion; default off.
     ao: OcclusionFields,
+    /// Whether what stands before a light hides it; default true.
+    shadows: bool,
+    /// Whether mirror images are seen; default true.
+    reflection: bool,
+    /// Whether one sees through what transmits; default true.
+    refraction: bool,
+    /// How much brighter the picture is made, in stops: one doubles it, -1 halves it; default 0.
+    exposure: Number<Exposure>,
 }
 
 /// Ambient occlusion.
@@ -99,13 +111,18 @@ struct OcclusionFields {
 
 impl Default for RenderFields {
     fn default() -> Self {
-        let Settings { width, height, samples, depth, .. } = Settings::default();
+        let Settings { width, height, samples, depth, ao: _, shadows, reflection, refraction } =
+            Settings::default();
         Self {
             width: Whole::default_of(width),
             height: Whole::default_of(height),
             samples: Whole::default_of(samples),
             depth: Whole::default_of(depth),
             ao: OcclusionFields::default(),
+            shadows,
+            reflection,
+            refraction,
+            exposure: Number::default_of(Tone::default().exposure),
         }
     }
 }
@@ -127,8 +144,11 @@ impl TryFrom<RenderFields> for RenderFile {
             samples: fields.samples.get(),
             depth: fields.depth.get(),
             ao: AmbientOcclusion { samples: fields.ao.samples.get(), distance: fields.ao.distance.get() },
-            ..Settings::default()
+            shadows: fields.shadows,
+            reflection: fields.reflection,
+            refraction: fields.refraction,
         };
-        settings.validate().map(|()| Self(settings))
+        let tone = Tone { exposure: fields.exposure.get() };
+        settings.validate().map(|()| Self { settings, tone })
     }
 }

@@ -6,10 +6,12 @@
 mod parse;
 mod scalar;
 mod text;
+mod write;
 
 pub(crate) use parse::{Parsed, parse};
-pub(crate) use scalar::Scalar;
-pub(crate) use text::decode;
+pub(crate) use scalar::{Scalar, same_scalar};
+pub(crate) use text::{RawOffsets, decode};
+pub(crate) use write::{Language, block, flow, flow_key};
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -101,6 +103,15 @@ impl Node {
         self.entries().iter().find(|entry| &*entry.key == key).map(|entry| &*entry.value)
     }
 
+    /// Whether it is a list or a mapping with nothing in it.
+    pub(crate) fn is_empty(&self) -> bool {
+        match &self.value {
+            Value::Scalar(_) => false,
+            Value::Sequence(items) => items.is_empty(),
+            Value::Mapping(entries) => entries.is_empty(),
+        }
+    }
+
     /// Whether something directly in this node was taken out, so that a fault of the node may be its echo.
     pub(crate) fn lost_a_part(&self) -> bool {
         match &self.value {
@@ -108,5 +119,20 @@ impl Node {
             Value::Sequence(items) => items.iter().any(|item| item.removed.get()),
             Value::Mapping(entries) => entries.iter().any(|entry| entry.value.removed.get()),
         }
+    }
+}
+
+/// Whether two trees mean the same, wherever their nodes stand.
+pub(crate) fn same_tree(a: &Node, b: &Node) -> bool {
+    match (&a.value, &b.value) {
+        (Value::Scalar(a), Value::Scalar(b)) => same_scalar(a, b),
+        (Value::Sequence(a), Value::Sequence(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same_tree(a, b))
+        }
+        (Value::Mapping(a), Value::Mapping(b)) => {
+            let same = |(a, b): (&Entry, &Entry)| a.key == b.key && same_tree(&a.value, &b.value);
+            a.len() == b.len() && a.iter().zip(b).all(same)
+        }
+        _ => false,
     }
 }

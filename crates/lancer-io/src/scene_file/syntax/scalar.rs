@@ -29,6 +29,19 @@ impl Scalar {
     }
 }
 
+/// Whether two scalars mean the same to every reader: numbers do by value, whether written whole or not.
+pub(crate) fn same_scalar(a: &Scalar, b: &Scalar) -> bool {
+    let number = |scalar: &Scalar| match scalar {
+        Scalar::Integer(value) => Some(*value as f64),
+        Scalar::Float(value) => Some(*value),
+        _ => None,
+    };
+    match (number(a), number(b)) {
+        (Some(x), Some(y)) => x.to_bits() == y.to_bits() || (x.is_nan() && y.is_nan()),
+        _ => a == b,
+    }
+}
+
 fn number(text: &str) -> Option<Scalar> {
     if let Some(digits) = text.strip_prefix("0x") {
         return in_radix(digits, 16);

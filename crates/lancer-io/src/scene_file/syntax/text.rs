@@ -75,6 +75,47 @@ fn surrogate_pair(text: &str) -> Option<char> {
     char::decode_utf16([unit(0)?, unit(6)?]).next()?.ok().filter(|character| character.len_utf16() == 2)
 }
 
+/// Where in the text of a file the bytes of its decoded text stand.
+pub(crate) struct RawOffsets {
+    /// Where the distance between the two changes: places in the decoded text and in the file's, in order.
+    steps: Vec<(usize, usize)>,
+}
+
+impl RawOffsets {
+    /// For a text and what [`decode`] made of it.
+    pub(crate) fn of(raw: &str, decoded: &str) -> Self {
+        let start = raw.len() - raw.strip_prefix('\u{feff}').unwrap_or(raw).len();
+        let mut steps = vec![(0, start)];
+        let (mut at, mut raw_at) = (0, start);
+        let (raw, decoded) = (raw.as_bytes(), decoded.as_bytes());
+        while at < decoded.len() {
+            let (taken, raw_taken) = if raw[raw_at..].starts_with(b"\r\n") {
+                (1, 2)
+            } else if raw[raw_at..].starts_with(b"\\u") && decoded[at..].starts_with(b"\\U") {
+                (CHARACTER_BYTES, SURROGATE_PAIR_BYTES)
+            } else {
+                (1, 1)
+            };
+            at += taken;
+            raw_at += raw_taken;
+            if taken != raw_taken {
+                steps.push((at, raw_at));
+            }
+        }
+        Self { steps }
+    }
+
+    /// The place in the file's text of a place in the decoded one.
+    pub(crate) fn get(&self, place: usize) -> usize {
+        let after = self.steps.partition_point(|&(decoded, _)| decoded <= place);
+        let (decoded, raw) = self.steps[after - 1];
+        raw + (place - decoded)
+    }
+}
+
+/// Of the escape that [`join_surrogates`] writes.
+const CHARACTER_BYTES: usize = r"\U0001f600".len();
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,6 +123,22 @@ mod tests {
     #[test]
     fn marks_and_line_ends_are_made_plain() {
         assert_eq!(decode("\u{feff}a: 1\r\nb: 2\rc: 3\n".as_bytes()).unwrap(), "a: 1\nb: 2\nc: 3\n");
+    }
+
+    #[test]
+    fn decoded_places_are_found_in_the_file() {
+        let raw = "\u{feff}{\"a\": \"\\ud83d\\ude00\",\r\n\"b\": 1,\r\"c\": 2}";
+        let decoded = decode(raw.as_bytes()).unwrap();
+        let offsets = RawOffsets::of(raw, &decoded);
+        for key in ["{", "\"b\"", "\"c\"", "1", "2}"] {
+            assert_eq!(offsets.get(decoded.find(key).unwrap()), raw.find(key).unwrap(), "{key}");
+        }
+        assert_eq!(
+            offsets.get(decoded.find('\n').unwrap()),
+            raw.find('\r').unwrap(),
+            "before both of its bytes"
+        );
+        assert_eq!(offsets.get(decoded.len()), raw.len());
     }
 
     #[test]
