@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Far longer than anything takes: when it is over, what was waited for will not come.
-const HANG: Duration = Duration::from_secs(120);
+const HANG: Duration = Duration::from_secs(300);
 
 /// How often is looked whether something has happened.
 const LOOK: Duration = Duration::from_millis(10);

@@ -3,8 +3,10 @@
 //! Pictures of each step stay in `target/tmp/window`.
 #![cfg(all(target_os = "linux", feature = "window"))]
 
+mod controls;
 mod files;
 mod moving;
+mod parameters;
 mod rendering;
 mod sitting;
 mod starting;

@@ -1,12 +1,12 @@
 //! The mouse in the picture.
 
-use crate::sitting::{shows_a_scene, sit};
+use crate::sitting::{BALLS, shows_a_scene, sit};
 use lancer_xvfb::Button;
 
 #[test]
 fn each_button_moves_the_view_and_home_goes_back() {
-    sit("mouse", ["whitted"], |sitting| {
-        sitting.wait_for_title("whitted - Lancer")?;
+    sit("mouse", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
+        sitting.wait_for_title("balls.yaml - Lancer")?;
         let home = sitting.see("home")?;
         for (button, by, name) in [
             (Button::Left, (80, 30), "left"),
@@ -26,7 +26,7 @@ fn each_button_moves_the_view_and_home_goes_back() {
 
 #[test]
 fn the_wheel_goes_nearer_and_back() {
-    sit("wheel", ["whitted"], |sitting| {
+    sit("wheel", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
         let home = sitting.see("home")?;
         sitting.wheel(Button::WheelUp)?;
         let nearer = sitting.see("nearer")?;

@@ -1,7 +1,7 @@
 //! A person before the window, for the length of a test.
 
+use crate::controls::Controls;
 use lancer_xvfb::{Area, Button, Display, Failure, FileDrag, Picture, Program, missing_tools};
-use std::ffi::OsStr;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,30 +11,39 @@ use tempfile::TempDir;
 /// The display, all of which the window takes.
 const SIZE: (u16, u16) = (1280, 800);
 
+/// Something of everything, and soon drawn.
+pub(crate) const BALLS: &str = "
+format: 1
+camera: {eye: [0, 2, 8], target: [0, 1, 0], fov: 40}
+ambient: 0.2
+background: '#87ceeb'
+lights: [{position: [4, 6, 4], intensity: 200}]
+materials:
+  floor: {color: [0.8, 0.7, 0.6]}
+  mirror: {diffuse: 0.1, reflect: 0.8}
+  glass: {ambient: 0.1, diffuse: 0.1, specular: 0.5, transmit: 0.8, reflect: 0.1}
+objects:
+  - {shape: plane, material: floor}
+  - {shape: sphere, material: mirror, transform: [{translate: [-1.2, 1, 0]}]}
+  - {shape: sphere, material: glass, transform: [{translate: [1.2, 1, 0.5]}]}
+render: {width: 160, height: 120, depth: 3, ao: {samples: 4}}
+";
+
 /// A part of the viewport that no panel, note or mark covers.
 pub(crate) const VIEW: Area = Area { x: 330, y: 250, width: 560, height: 300 };
 
 /// More colours than a panel or an empty viewport has.
 const COLOURS_OF_A_SCENE: usize = 200;
 
-/// Lets a person sit before a window that was opened with these arguments, in a directory of their own, and checks
-/// that the program said nothing to the terminal.
+/// Lets a person sit before a window that was opened with these arguments, in a directory with these files, and
+/// checks that the program said nothing to the terminal.
 ///
 /// # Panics
 /// Something did not go as it should; what the program said and what was seen last is told.
-pub(crate) fn sit<S: AsRef<OsStr>>(
+pub(crate) fn sit(
     name: &str,
-    arguments: impl IntoIterator<Item = S>,
-    test: impl FnOnce(&mut Sitting<'_>) -> Result<(), Failure>,
-) {
-    sit_in(tempfile::tempdir().unwrap(), name, arguments, test);
-}
-
-/// As [`sit`], in a directory that is there already.
-pub(crate) fn sit_in<S: AsRef<OsStr>>(
-    directory: TempDir,
-    name: &str,
-    arguments: impl IntoIterator<Item = S>,
+    arguments: &[&str],
+    files: &[(&str, &str)],
     test: impl FnOnce(&mut Sitting<'_>) -> Result<(), Failure>,
 ) {
     let missing = missing_tools();
@@ -44,6 +53,8 @@ pub(crate) fn sit_in<S: AsRef<OsStr>>(
         let _ = writeln!(std::io::stderr(), "SKIPPED: the window was not tested, for want of {missing:?}");
         return;
     }
+    let directory = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, text)| fs::write(directory.path().join(name), text).unwrap());
     let display = Display::start(SIZE.0, SIZE.1).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_lancer"));
     let program = Program::start(
@@ -103,7 +114,8 @@ impl Sitting<'_> {
         self.view()
     }
 
-    fn keep(&mut self, step: &str) -> Result<PathBuf, Failure> {
+    /// Keeps a picture of all that is seen now under this name.
+    pub(crate) fn keep(&mut self, step: &str) -> Result<PathBuf, Failure> {
         self.steps += 1;
         let path = self.pictures.join(format!("{:02}-{step}.png", self.steps));
         self.display.picture()?.save(&path)?;
@@ -162,6 +174,12 @@ impl Sitting<'_> {
         self.display.release(button)
     }
 
+    /// The controls of this window, while it shows a scene of the directory.
+    pub(crate) fn controls(&self, scene: &str) -> Result<Controls, Failure> {
+        let size = [f32::from(SIZE.0), f32::from(SIZE.1)];
+        Controls::of(self.path(scene), size, self.path("controls"))
+    }
+
     /// Clicks.
     pub(crate) fn click(&self, at: (i32, i32)) -> Result<(), Failure> {
         self.display.click(at, Button::Left)
@@ -174,9 +192,9 @@ impl Sitting<'_> {
         self.wait_for_change(&before)
     }
 
-    /// Drags a file over the window, as from a file manager.
-    pub(crate) fn drag_file(&self, file: &Path) -> Result<FileDrag, Failure> {
-        FileDrag::over(self.display, &self.program, &[file], (600, 400))
+    /// Drags a file of the directory over the window, as from a file manager.
+    pub(crate) fn drag_file(&self, name: &str) -> Result<FileDrag, Failure> {
+        FileDrag::over(self.display, &self.program, &[&self.path(name)], (600, 400))
     }
 
     /// Closes the window by the cross in its corner.

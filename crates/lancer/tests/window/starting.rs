@@ -1,10 +1,10 @@
 //! How it begins and ends.
 
-use crate::sitting::{shows_a_scene, sit};
+use crate::sitting::{BALLS, shows_a_scene, sit};
 
 #[test]
 fn without_arguments_the_default_scene_is_shown_and_ctrl_q_quits() {
-    sit("start", [""; 0], |sitting| {
+    sit("start", &[], &[], |sitting| {
         sitting.wait_for_title("whitted - Lancer")?;
         assert!(shows_a_scene(&sitting.see("default-scene")?));
         sitting.keys(&["ctrl+q"])?;
@@ -15,7 +15,7 @@ fn without_arguments_the_default_scene_is_shown_and_ctrl_q_quits() {
 
 #[test]
 fn the_cross_in_the_corner_closes() {
-    sit("close", ["shadows"], |sitting| {
+    sit("close", &["shadows"], &[], |sitting| {
         sitting.wait_for_title("shadows - Lancer")?;
         sitting.close()?;
         assert!(sitting.end()?.success());
@@ -25,7 +25,7 @@ fn the_cross_in_the_corner_closes() {
 
 #[test]
 fn a_scene_is_chosen_by_its_name() {
-    sit("choose", ["whitted"], |sitting| {
+    sit("choose", &["whitted"], &[], |sitting| {
         sitting.wait_for_title("whitted - Lancer")?;
         let whitted = sitting.see("whitted")?;
         sitting.command("mirrors")?;
@@ -38,9 +38,9 @@ fn a_scene_is_chosen_by_its_name() {
 
 #[test]
 fn themes_and_languages_change_the_panels_and_no_pixel_of_the_scene() {
-    sit("themes", ["whitted"], |sitting| {
+    sit("themes", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
         let before = sitting.see("english")?;
-        for command in ["Light theme", "Fran", "Th\u{e8}me sombre", "English"] {
+        for command in ["Light theme", "Francais", "sombre", "English"] {
             sitting.command(command)?;
             assert!(sitting.see(&command.to_lowercase().replace(' ', "-"))? == before, "{command}");
         }
