@@ -148,6 +148,29 @@ mod tests {
     }
 
     #[test]
+    fn pixel_of_finds_the_pixel_whose_ray_meets_the_point() {
+        let camera = Camera { eye: DVec3::new(3.0, -2.0, 5.0), fov: 70.0, ..Camera::default() };
+        let projection = camera.project(640, 480).unwrap();
+        let [_, _, backward] = camera.frame().unwrap();
+        for (x, y) in [(0.0, 0.0), (320.0, 240.0), (17.5, 400.25), (640.0, 480.0), (-300.0, 900.0)] {
+            for t in [1e-3, 1.0, 1e4] {
+                let point = projection.ray(x, y).at(t);
+                let (found_x, found_y, depth) = projection.pixel_of(point).unwrap();
+                assert!((found_x - x).abs() < 1e-9 / t.min(1.0) && (found_y - y).abs() < 1e-9 / t.min(1.0));
+                assert!((depth - (camera.eye - point).dot(backward)).abs() < 1e-12 * t);
+            }
+        }
+    }
+
+    #[test]
+    fn points_at_and_behind_the_eye_are_in_no_pixel() {
+        let projection = Camera::default().project(100, 100).unwrap();
+        for point in [DVec3::Z * 5.0, DVec3::Z * 6.0, DVec3::new(1.0, 2.0, 5.0), DVec3::NAN] {
+            assert_eq!(projection.pixel_of(point), None, "{point}");
+        }
+    }
+
+    #[test]
     fn cameras_that_make_no_picture_are_refused() {
         let good = Camera::default();
         let refused = |camera: Camera| camera.project(1, 1).unwrap_err();

@@ -1,14 +1,14 @@
 //! From a scene to a world.
 
+use super::check::check_numbers;
 use super::geometry::{Geometry, PreparedMesh, TriangleIndex};
-use super::{Object, ObjectId, ObjectIndex, World};
+use super::{CompileError, Object, ObjectId, ObjectIndex, World};
 use crate::accel::triangles::TriangleTree;
-use crate::accel::{Aabb, Accelerator, BuildError, Bvh, KdSettings, KdTree, Primitives, Quality, bvh};
+use crate::accel::{Aabb, Accelerator, Bvh, KdSettings, KdTree, Primitives, Quality};
 use crate::cancel::CancelToken;
-use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Transform};
 use crate::mesh::Mesh;
-use crate::scene::{Light, Material, MaterialId, NodeId, Scene, Shape, Texture};
+use crate::scene::{Material, MaterialId, NodeId, Scene, Shape};
 use crate::simd::InstructionSet;
 use fearless_simd::Level;
 use rayon::prelude::*;
@@ -42,81 +42,6 @@ pub struct CompileControl<'a> {
     pub previous: Option<&'a World>,
     /// Stops it.
     pub cancel: CancelToken,
-}
-
-/// Why a scene cannot be traced. Nodes, materials and lights are told by name, or by number where they have none.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CompileError {
-    /// Nothing is drawn.
-    #[error("the scene draws nothing")]
-    NothingToDraw,
-    /// A node is its own descendant.
-    #[error("{node} contains itself")]
-    Cycle {
-        /// The node.
-        node: String,
-    },
-    /// An object's global transform has no inverse.
-    #[error("the transform of {node} is singular: it flattens the object or has entries that are not finite")]
-    Singular {
-        /// The node.
-        node: String,
-    },
-    /// A node names a node or a material that the scene does not have.
-    #[error("{node} refers to something that is not in the scene")]
-    Dangling {
-        /// The node.
-        node: String,
-    },
-    /// Subtrees used many times make too many objects.
-    #[error("the scene draws {count} objects, more than {}", World::MAX_OBJECTS)]
-    TooManyObjects {
-        /// How many, or more.
-        count: u64,
-    },
-    /// A coefficient of a material is out of its range.
-    #[error("{property} of {material} {requirement}")]
-    Material {
-        /// The material.
-        material: String,
-        /// Which coefficient.
-        property: &'static str,
-        /// What it must be.
-        requirement: &'static str,
-    },
-    /// A light's position or intensity, the ambient light or the background is out of its range.
-    #[error("{what} must be finite and not negative")]
-    Light {
-        /// Which.
-        what: String,
-    },
-    /// A tree could not be built.
-    #[error(transparent)]
-    Tree(BuildError),
-    /// A hierarchy of boxes could not be built.
-    #[error(transparent)]
-    Bvh(bvh::BuildError),
-    /// It was cancelled.
-    #[error("the compilation was cancelled")]
-    Cancelled,
-}
-
-impl From<BuildError> for CompileError {
-    fn from(error: BuildError) -> Self {
-        match error {
-            BuildError::Cancelled => Self::Cancelled,
-            BuildError::TooManyPrimitives { .. } => Self::Tree(error),
-        }
-    }
-}
-
-impl From<bvh::BuildError> for CompileError {
-    fn from(error: bvh::BuildError) -> Self {
-        match error {
-            bvh::BuildError::Cancelled => Self::Cancelled,
-            bvh::BuildError::TooManyPrimitives { .. } => Self::Bvh(error),
-        }
-    }
 }
 
 impl World {
@@ -213,6 +138,9 @@ impl World {
         let options = self.options;
         let mut boxes = Vec::new();
         for (index, object) in self.objects.iter().enumerate() {
+            if cancel.is_cancelled() {
+                return Err(CompileError::Cancelled);
+            }
             let id = ObjectId(index as u32);
             let bounds = object.placement.bounds_to_world(object.geometry.bounds(&self.meshes));
             let aabb = Aabb::around(&bounds);
@@ -372,55 +300,4 @@ fn flatten(scene: &Scene, drawn: &[u64], cancel: &CancelToken, out: &mut Flat) -
 fn name_of(scene: &Scene, id: NodeId) -> String {
     let name = &scene.node(id).name;
     if name.is_empty() { format!("node {}", id.index()) } else { format!("`{name}`") }
-}
-
-/// Checks every number that an author gave, so that tracing need not.
-fn check_numbers(scene: &Scene) -> Result<(), CompileError> {
-    let light = |what: String, ok: bool| if ok { Ok(()) } else { Err(CompileError::Light { what }) };
-    light("the ambient light".into(), is_intensity(scene.ambient))?;
-    light("the background".into(), is_intensity(scene.background))?;
-    for (index, Light { name, position, intensity }) in scene.lights.iter().enumerate() {
-        let ok = position.is_finite() && is_intensity(*intensity);
-        let label = if name.is_empty() { format!("light {index}") } else { format!("light `{name}`") };
-        light(label, ok)?;
-    }
-    scene.materials().iter().enumerate().try_for_each(|(index, material)| check_material(index, material))
-}
-
-fn check_material(index: usize, material: &Material) -> Result<(), CompileError> {
-    let not_negative = "must be finite and not negative";
-    let colors = match &material.color {
-        Texture::Solid(color) => vec![*color],
-        Texture::Checker { even, odd, .. } => vec![*even, *odd],
-        Texture::Image(_) => Vec::new(),
-    };
-    let checker_size = match material.color {
-        Texture::Checker { size, .. } => size,
-        _ => 1.0,
-    };
-    let checks = [
-        ("color", not_negative, colors.into_iter().all(is_intensity)),
-        ("the checker's size", "must be finite and above 0", checker_size.is_finite() && checker_size > 0.0),
-        ("ambient", not_negative, is_intensity(material.ambient)),
-        ("diffuse", not_negative, is_intensity(material.diffuse)),
-        ("specular", not_negative, is_intensity(material.specular)),
-        ("metallic", not_negative, is_intensity(material.metallic)),
-        ("shininess", not_negative, is_intensity(material.shininess.into())),
-        ("reflect", not_negative, is_intensity(material.reflect)),
-        ("transmit", not_negative, is_intensity(material.transmit)),
-        ("ior", "must be finite and above 0", material.ior.is_finite() && material.ior > 0.0),
-    ];
-    match checks.into_iter().find(|(_, _, ok)| !ok) {
-        None => Ok(()),
-        Some((property, requirement, _)) => {
-            let name = &material.name;
-            let material =
-                if name.is_empty() { format!("material {index}") } else { format!("material `{name}`") };
-            Err(CompileError::Material { material, property, requirement })
-        }
-    }
-}
-
-fn is_intensity(color: Rgb) -> bool {
-    color.to_array().iter().all(|channel| channel.is_finite() && *channel >= 0.0)
 }

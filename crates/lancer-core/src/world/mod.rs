@@ -15,7 +15,9 @@
 //! lowest object, and there of the lowest primitive.
 
 mod boxes;
+mod check;
 mod compile;
+mod error;
 mod fan;
 mod geometry;
 mod intersection;
@@ -23,7 +25,8 @@ mod media;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{CompileControl, CompileError, CompileOptions};
+pub use compile::{CompileControl, CompileOptions};
+pub use error::CompileError;
 pub use intersection::Intersection;
 pub use media::Media;
 pub(crate) use media::Touching;

@@ -26,8 +26,8 @@ const FEW_CELLS: usize = 32;
 /// Ranges of fewer primitives are parted by primitives.
 const FEW_PRIMITIVES: usize = 512;
 
-/// Smaller ranges are done sooner than anyone waits for the end of a build that is cancelled.
-const COARSE: usize = 1 << 12;
+/// Smaller ranges are not worth a look at whether the build is cancelled; they take microseconds.
+const COARSE: usize = 128;
 
 /// A binary tree in pieces, and its primitives from leaf to leaf.
 pub(super) struct Grown {
@@ -114,10 +114,10 @@ impl Grower<'_> {
     /// The tree over all items, which are written in the order of its leaves.
     fn range(&self, items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
         let count = out.len();
-        if count > LARGE && !is_deep(depth, count) {
+        if count > LARGE && !is_deep(depth, count) && !self.cancel.is_cancelled() {
             let mut cells = Cells::new(&items, count, count / PRIMITIVES_PER_CELL);
             if cells.boxes.len() > 1 {
-                let plan = Self::plan(&mut cells.boxes, count, depth, true);
+                let plan = self.plan(&mut cells.boxes, count, depth, true);
                 cells.scatter(&items, out);
                 drop((items, cells));
                 return self.follow(plan, out, depth);
@@ -129,17 +129,18 @@ impl Grower<'_> {
         self.piece(out, depth)
     }
 
-    fn plan(cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
+    fn plan(&self, cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
         let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
-        if cells.len() == 1 || (few && !is_first) || is_deep(depth, count) {
+        let ends = (few && !is_first) || self.cancel.is_cancelled();
+        if cells.len() == 1 || ends || is_deep(depth, count) {
             return Plan::Rest { count };
         }
         let bounds = around(cells);
         let Parts { length, .. } = part(cells, Quality::High);
         let (below, above) = cells.split_at_mut(length);
         let count_below = below.iter().map(|cell| cell.weight() as usize).sum();
-        let mut grow_below = || Self::plan(below, count_below, depth + 1, false);
-        let mut grow_above = || Self::plan(above, count - count_below, depth + 1, false);
+        let mut grow_below = || self.plan(below, count_below, depth + 1, false);
+        let mut grow_above = || self.plan(above, count - count_below, depth + 1, false);
         let (below, above) = if length > FEW_CELLS {
             rayon::join(grow_below, grow_above)
         } else {

@@ -220,3 +220,16 @@ fn boxes_that_are_no_numbers_do_no_harm() {
         assert!(bvh.depth() <= Bvh::MAX_DEPTH);
     }
 }
+
+#[test]
+fn a_cancelled_build_makes_no_hierarchy() {
+    let cancel = CancelToken::default();
+    cancel.cancel();
+    // Small, sorted into cells, and with all centres in one point.
+    for boxes in [scattered(1, 10, 0.1), scattered(2, 50_000, 0.01), vec![scattered(3, 1, 0.1)[0]; 50_000]] {
+        for quality in QUALITIES {
+            let built = Bvh::build_with(&boxes, quality, &cancel);
+            assert_eq!(built.map(drop), Err(BuildError::Cancelled));
+        }
+    }
+}

@@ -8,6 +8,7 @@
 //! kd-tree construction with an adaptive error-bounded heuristic" (2006), for the bins of large nodes.
 
 mod build;
+mod cells;
 mod node;
 mod split;
 #[cfg(test)]
@@ -19,7 +20,7 @@ pub use validate::{Defect, NodeKind, NodeVisit};
 
 use super::{Aabb, Primitives};
 use crate::cancel::CancelToken;
-use node::{Kind, Node};
+use node::Node;
 
 /// The two numbers that bound a tree. `None` leaves a number to the renderer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,24 +84,6 @@ impl KdTree {
         cancel: &CancelToken,
     ) -> Result<Self, BuildError> {
         build::build(primitives, settings, cancel)
-    }
-
-    /// The cells at `level`, the root's being 0: at most `most`, in the order of the tree.
-    pub fn cells_at(&self, level: u32, most: usize) -> Vec<Aabb> {
-        let mut cells = Vec::new();
-        let mut pending = vec![(0, self.bounds, 0)];
-        while cells.len() < most
-            && let Some((index, cell, depth)) = pending.pop()
-        {
-            if depth == level {
-                cells.push(cell);
-            } else if let Kind::Inner { axis, position, above } = self.nodes[index].kind() {
-                let [lower, upper] = cell.split(axis, position);
-                pending.push((above as usize, upper, depth + 1));
-                pending.push((index + 1, lower, depth + 1));
-            }
-        }
-        cells
     }
 
     /// The box around all primitives.

@@ -5,6 +5,7 @@ use crate::geometry::{DVec3, Ray};
 use crate::mesh::{Mesh, MeshData};
 use crate::shape::triangle::ShearedRay;
 use crate::testing::{Random, ball, soup};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// All triangles that a ray hits, with their t, by the tree.
 fn hits_by_tree(tree: &KdTree, mesh: &Mesh, ray: &Ray) -> Vec<(u32, u64)> {
@@ -199,4 +200,60 @@ fn an_empty_tree_is_crossed_without_a_visit_that_finds_anything() {
     }
     let tree = KdTree::build(&Nothing, KdSettings::default()).unwrap();
     tree.visit_leaves(&Ray::new(DVec3::NEG_Z, DVec3::Z), |leaf| panic!("a visit of {leaf:?}"));
+}
+
+/// Boxes that cancel the build while one of them is cut.
+struct Cancelling {
+    boxes: Vec<Aabb>,
+    cuts: AtomicUsize,
+    last: usize,
+    cancel: CancelToken,
+}
+
+impl Primitives for Cancelling {
+    fn count(&self) -> usize {
+        self.boxes.len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        self.boxes[primitive as usize]
+    }
+
+    fn clip(&self, primitive: u32, cell: &Aabb) -> Option<Aabb> {
+        if self.cuts.fetch_add(1, Ordering::Relaxed) == self.last {
+            self.cancel.cancel();
+        }
+        self.bounds(primitive).intersection(cell)
+    }
+}
+
+#[test]
+fn a_build_ends_with_the_node_in_which_it_is_cancelled() {
+    let mesh = soup(7, 2000);
+    let boxes = (0..2000).map(|i| Primitives::bounds(&mesh, i)).collect::<Vec<_>>();
+    let build = |last: usize| {
+        let cancel = CancelToken::default();
+        let primitives = Cancelling { boxes: boxes.clone(), cuts: AtomicUsize::new(0), last, cancel };
+        let tree = KdTree::build_with(&primitives, KdSettings::default(), &primitives.cancel);
+        (tree.map(drop), primitives.cuts.into_inner())
+    };
+    let (built, all) = build(usize::MAX);
+    assert_eq!(built, Ok(()));
+    for last in [0, all / 4, all / 2] {
+        let (built, cuts) = build(last);
+        assert_eq!(built, Err(BuildError::Cancelled));
+        assert!(cuts <= last + 2 * boxes.len() && cuts < all, "{cuts} of {all}");
+    }
+}
+
+#[test]
+fn the_cells_of_a_level_are_those_that_a_visit_finds_there() {
+    let mesh = soup(3, 500);
+    let tree = build(&mesh, KdSettings::default());
+    for level in 0..=tree.depth() + 1 {
+        let mut expected = Vec::new();
+        tree.visit_nodes(|_, node| expected.extend((node.depth == level).then_some(node.bounds)));
+        assert_eq!(tree.cells_at(level, usize::MAX), expected);
+        assert_eq!(tree.cells_at(level, 3), expected[..expected.len().min(3)]);
+    }
 }

@@ -1,5 +1,8 @@
 //! Radiance where it is known: analytic answers first.
 
+mod cancel;
+mod switches;
+
 use super::*;
 use crate::color::Rgb;
 use crate::geometry::portable::{acos, sin_cos};

@@ -1,5 +1,9 @@
 //! Compilation, and the promises of what comes out of it.
 
+mod boxes;
+mod hidden;
+mod recompile;
+
 use super::*;
 use crate::accel::Accelerator;
 

@@ -1,5 +1,9 @@
 //! Pictures: the same bytes whatever traces them, and the parts of one.
 
+mod features;
+mod occlusion;
+mod switches;
+
 use super::*;
 use crate::Rgb;
 use crate::accel::{Accelerator, KdSettings};
@@ -145,6 +149,22 @@ fn a_cancelled_render_ends_without_a_picture() {
     let control = Control { cancel, on_tile: &|_, _| stop.cancel(), tile_size: 4 };
     let result = render(&world, &scene.camera, &scene.settings, None, &control);
     assert_eq!(result, Err(RenderError::Cancelled));
+}
+
+#[test]
+fn no_tile_is_handed_out_after_the_cancel() {
+    let scene = scene();
+    let world = World::compile(&scene, &CompileOptions::default()).unwrap();
+    let cancel = CancelToken::default();
+    let (stop, tiles) = (cancel.clone(), std::sync::atomic::AtomicU32::new(0));
+    let on_tile = |_: &Tile, _: &crate::integrator::RayCounts| {
+        stop.cancel();
+        tiles.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    let control = Control { cancel, on_tile: &on_tile, tile_size: 4 };
+    let alone = with_threads(1, || render(&world, &scene.camera, &scene.settings, None, &control));
+    assert_eq!(alone.unwrap(), Err(RenderError::Cancelled));
+    assert_eq!(tiles.into_inner(), 1);
 }
 
 #[test]
