@@ -203,7 +203,7 @@ pub(super) fn number<N: Numeric>(
     let height = ui.spacing().interact_size.y;
     // A field that is left as it was writes what it shows; the decimals that it does not show must not be lost by it.
     let digits = if width < ROOM_FOR_FIVE_DIGITS { 4 } else { 5 };
-    let shown = parse_number(&rounded_text(value.to_f64(), digits, language));
+    let shown = parse_number(&number_text(value.to_f64(), digits, language));
     let drag = DragValue::from_get_set(move |new| {
         if let Some(new) = new.filter(|new| Some(*new) != shown) {
             *value = N::from_f64(new);
@@ -221,7 +221,7 @@ pub(super) fn number<N: Numeric>(
             .clamp_existing_to_range(false)
             .speed(speed)
             .update_while_editing(false)
-            .custom_formatter(move |value, _| rounded_text(value, digits, language))
+            .custom_formatter(move |value, _| number_text(value, digits, language))
             .custom_parser(parse_number)
             .min_size(vec2(width, height))
             .clip_text(true),
@@ -231,12 +231,8 @@ pub(super) fn number<N: Numeric>(
 /// The width in points in which "0.8714" is not cut.
 const ROOM_FOR_FIVE_DIGITS: f32 = 52.0;
 
-/// A number with at most five digits, or all of those before the decimal mark, which is that of the language.
-pub(super) fn number_text(value: f64, language: Language) -> String {
-    rounded_text(value, 5, language)
-}
-
-fn rounded_text(value: f64, digits: i32, language: Language) -> String {
+/// A number with at most so many digits, or all of those before the decimal mark, which is that of the language.
+fn number_text(value: f64, digits: i32, language: Language) -> String {
     // A zero before the mark counts as a digit.
     let power = |exponent: i32| portable::pow(10.0, exponent.into());
     let decimals = (1..digits).rev().find(|&decimals| value.abs() < power(digits - decimals)).unwrap_or(0);
@@ -271,21 +267,21 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_have_the_decimal_mark_of_the_language() {
-        assert_eq!(number_text(0.1 + 0.2, Language::English), "0.3");
-        assert_eq!(number_text(2.5, Language::French), "2,5");
-        assert_eq!(number_text(1920.0, Language::French), "1920");
-        assert_eq!(number_text(2e-5, Language::English), "2e-5");
-        assert_eq!(number_text(-1.0 / 3e4, Language::English), "-3.33e-5");
-        assert_eq!(rounded_text(0.8714, 4, Language::English), "0.871");
-        assert_eq!(number_text(-672.1234, Language::English), "-672.12");
-        assert_eq!(number_text(1_234_567.8, Language::English), "1234568");
+        assert_eq!(number_text(0.1 + 0.2, 5, Language::English), "0.3");
+        assert_eq!(number_text(2.5, 5, Language::French), "2,5");
+        assert_eq!(number_text(1920.0, 5, Language::French), "1920");
+        assert_eq!(number_text(2e-5, 5, Language::English), "2e-5");
+        assert_eq!(number_text(-1.0 / 3e4, 5, Language::English), "-3.33e-5");
+        assert_eq!(number_text(0.8714, 4, Language::English), "0.871");
+        assert_eq!(number_text(-672.1234, 5, Language::English), "-672.12");
+        assert_eq!(number_text(1_234_567.8, 5, Language::English), "1234568");
     }
 
     #[test]
     fn what_is_shown_can_be_typed_again() {
         for language in Language::ALL {
             for value in [0.0, -1.5, 1e-6, 0.25, 65_535.0] {
-                assert_eq!(parse_number(&number_text(value, language)), Some(value));
+                assert_eq!(parse_number(&number_text(value, 5, language)), Some(value));
             }
         }
     }
