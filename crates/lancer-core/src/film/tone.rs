@@ -17,9 +17,14 @@ impl Tone {
     /// showing is still an `f32`. Beyond 127 black would become 0 times infinity.
     pub const MAX_EXPOSURE: f64 = 100.0;
 
+    /// What radiance is multiplied by.
+    pub fn factor(&self) -> f32 {
+        portable::exp2(self.exposure) as f32
+    }
+
     /// The image with the exposure applied, still linear and unclamped.
     pub fn expose(&self, image: &Image) -> Image {
-        let factor = portable::exp2(self.exposure) as f32;
+        let factor = self.factor();
         image.map(|pixel| pixel.map(|channel| channel * factor))
     }
 }

@@ -4,6 +4,8 @@ use super::{App, Selection};
 use crate::document::Document;
 use crate::language::Phrase;
 use crate::navigation::Navigator;
+use crate::panels::inspector::InspectorState;
+use crate::panels::scene_tree::TreeState;
 use crate::worker::{Event, Opened, RenderFault, Rendered};
 use eframe::egui::Context;
 use lancer_io::Loaded;
@@ -60,10 +62,11 @@ impl App {
             self.navigator.set_home(scene.camera);
         } else {
             self.navigator = Navigator::new(scene.camera);
+            self.tree = TreeState::default();
+            self.inspector = InspectorState::default();
             self.shelf.showing = super::shelf::Showing::Live;
         }
         self.selection = Selection::None;
-        self.tree = Default::default();
         if let Some(path) = source.path() {
             self.preferences.recent.add(path);
         }

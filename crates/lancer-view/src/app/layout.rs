@@ -42,7 +42,7 @@ impl App {
             self.fault_banner(ui, actions);
             if self.preferences.panels.hints && self.shelf.showing == Showing::Live {
                 Panel::bottom("hint").frame(Frame::side_top_panel(ui.style())).show(ui, |ui| {
-                    let hint = super::viewport::mouse_hint(self.preferences.scheme);
+                    let hint = self.preferences.scheme.hint();
                     ui.add(egui::Label::new(RichText::new(language.say(hint)).small().weak()).truncate());
                 });
             }

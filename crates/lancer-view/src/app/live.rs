@@ -6,7 +6,7 @@ use crate::overlay::{self, OverlayInput, OverlayOptions};
 use crate::picture::PictureTexture;
 use crate::worker::{Channel, Frame, ViewRequest, Worker};
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
-use lancer_core::film::Tone;
+use lancer_core::film::{Image, Tone};
 use lancer_core::geometry::DVec3;
 use lancer_core::scene::Settings;
 use lancer_core::world::{CompileOptions, ObjectId};
@@ -30,6 +30,8 @@ struct Shown {
     frame: Frame,
     serial: u64,
     tone: Tone,
+    /// The mean of its linear values, as they are shown.
+    brightness: f32,
     texture: PictureTexture,
 }
 
@@ -56,6 +58,9 @@ const OCCLUSION_SAMPLES: u32 = 64;
 
 /// Seconds after the last turn of a wheel until the picture may be refined: about the pause between two turns.
 const WHEEL_PAUSE: f64 = 0.2;
+
+/// Linear brightness below which a picture counts as dark: sRGB's middle, about.
+const DARK: f32 = 0.2;
 
 impl Default for Live {
     fn default() -> Self {
@@ -152,17 +157,24 @@ impl Live {
             None => (None, 0),
         };
         let tone = self.tone_of(tone);
+        let brightness = brightness(&frame.image, tone);
         let texture = PictureTexture::new(ctx, &frame.image, tone, true, previous);
-        self.shown = Some(Shown { frame, serial, tone, texture });
+        self.shown = Some(Shown { frame, serial, tone, brightness, texture });
     }
 
     /// Shows the frame in another exposure, which asks nothing of the worker.
     pub(crate) fn expose(&mut self, ctx: &Context, tone: Tone) {
         let tone = self.tone_of(tone);
         if let Some(shown) = self.shown.take_if(|shown| shown.tone != tone) {
+            let brightness = brightness(&shown.frame.image, tone);
             let texture = PictureTexture::new(ctx, &shown.frame.image, tone, true, Some(shown.texture));
-            self.shown = Some(Shown { tone, texture, ..shown });
+            self.shown = Some(Shown { tone, brightness, texture, ..shown });
         }
+    }
+
+    /// Whether bright lines show better on the picture than dark ones.
+    pub(crate) fn is_dark(&self) -> bool {
+        self.shown.as_ref().is_none_or(|shown| shown.brightness < DARK)
     }
 
     /// Exposure is for radiance: depths and normals are shown as they are.
@@ -202,6 +214,16 @@ impl Live {
         }
         self.overlay.as_ref().map(|drawn| &drawn.texture)
     }
+}
+
+/// The mean of some of an image's linear values, each cut to what a screen shows.
+fn brightness(image: &Image, tone: Tone) -> f32 {
+    let some = image.pixels().iter().step_by(image.pixels().len().div_ceil(4096));
+    let factor = tone.factor();
+    let value =
+        |pixel: &[f32; 3]| pixel.iter().map(|channel| (channel * factor).clamp(0.0, 1.0)).sum::<f32>() / 3.0;
+    let count = some.len() as f32;
+    some.map(value).sum::<f32>() / count
 }
 
 fn is_same(a: &ViewRequest, b: &ViewRequest) -> bool {

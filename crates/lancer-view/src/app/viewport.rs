@@ -4,7 +4,7 @@ use super::live::OverlayKey;
 use super::shelf::Showing;
 use super::{Action, App, Selection};
 use crate::language::Phrase;
-use crate::navigation::{Button, Gesture, Modifiers, Scheme};
+use crate::navigation::{Button, Gesture, Modifiers};
 use crate::picture::{Readout, Taken};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
@@ -89,7 +89,7 @@ impl App {
             selected,
             selected_light,
             interest: self.navigator.point_of_interest(),
-            dark: ui.visuals().dark_mode,
+            dark: self.live.is_dark(),
             pixels_per_point: ui.ctx().pixels_per_point(),
             frame: 0,
         };
@@ -423,22 +423,4 @@ fn announce_drop(ui: &Ui, rect: Rect, text: &str) {
     ui.painter().rect_filled(rect, 0.0, ui.visuals().window_fill.gamma_multiply(0.85));
     let color = ui.visuals().strong_text_color();
     ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(24.0), color);
-}
-
-/// What the mouse does, for the line at the bottom of the picture.
-pub(super) fn mouse_hint(scheme: Scheme) -> Phrase {
-    match scheme {
-        Scheme::Assignment => Phrase::new(
-            "Left: move in the plane   Middle or wheel: along the view   Right: turn   Double click: turn about this",
-            "Gauche : déplacer dans le plan   Milieu ou molette : selon l’axe de vue   Droit : tourner   Double clic : tourner autour",
-        ),
-        Scheme::Orbit => Phrase::new(
-            "Left: turn   Middle: move in the plane   Right or wheel: along the view   Double click: turn about this",
-            "Gauche : tourner   Milieu : déplacer dans le plan   Droit ou molette : selon l’axe de vue   Double clic : tourner autour",
-        ),
-        Scheme::Trackpad => Phrase::new(
-            "Drag or two fingers: turn   Shift: move in the plane   Ctrl or pinch: along the view   Double click: turn about this",
-            "Glisser ou deux doigts : tourner   Maj : déplacer dans le plan   Ctrl ou pincer : selon l’axe de vue   Double clic : tourner autour",
-        ),
-    }
 }

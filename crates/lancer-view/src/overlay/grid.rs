@@ -50,6 +50,7 @@ impl Grid {
     }
 
     pub(super) fn draw(&self, pen: &mut Pen, palette: &Palette) {
+        // Casings would take out of so thin lines what they are to show, and take long.
         let style = Style { color: palette.grid, casing: None, alpha: 0.5, width: 1.0 };
         pen.draw(style, |strokes| {
             self.draw_lines(strokes, self.middle, |across, along| DVec3::new(across, 0.0, along));

@@ -64,6 +64,12 @@ impl Lens {
         DVec3::new(in_plane.x, -in_plane.y, 1.0)
     }
 
+    /// Where a point is, also outside of the viewport; none where it is not before the eye.
+    pub(super) fn pixel_of(&self, point: DVec3) -> Option<DVec2> {
+        let point = self.direction(point - self.eye);
+        (point.z > 0.0).then(|| self.middle + DVec2::new(point.x, -point.y) * (self.pixels / point.z))
+    }
+
     /// Where a point is; none where it is not before the eye, or far outside of the viewport.
     pub(super) fn place(&self, point: DVec3) -> Option<End> {
         self.line(point, point).map(|[end, _]| end)

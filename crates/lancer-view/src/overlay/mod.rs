@@ -75,7 +75,7 @@ pub struct OverlayInput<'a> {
     pub interest: DVec3,
     /// How many pixels a point of the screen has: 1, or 2 on a fine one.
     pub pixels_per_point: f32,
-    /// Bright lines for a dark theme, or dark lines for a light one.
+    /// Bright lines on dark casings, as a dark picture needs them; else the other way about, for a bright picture.
     pub dark: bool,
 }
 
@@ -120,7 +120,7 @@ pub fn draw(input: &OverlayInput) -> OverlayImage {
         lights::draw(&mut pen, palette, world.lights(), input.selected_light);
     }
     if !selected.is_empty() {
-        outline::draw(&mut pen, palette, features, selected);
+        outline::draw(&mut pen, palette, world, features, selected);
     }
     if options.interest {
         draw_interest(&mut pen, palette, input.interest);

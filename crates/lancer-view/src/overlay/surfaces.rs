@@ -65,7 +65,7 @@ impl<'a> Surfaces<'a> {
 
     /// A place of the viewport among the features. The middles and heights are one; the widths may differ by
     /// what rounding did to a smaller size.
-    fn to_features(&self, at: DVec2) -> DVec2 {
+    pub(super) fn to_features(&self, at: DVec2) -> DVec2 {
         (at - self.middle) * self.scale + self.feature_middle
     }
 

@@ -2,9 +2,11 @@
 
 use crate::{Language, Phrase};
 use eframe::egui::{
-    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, RichText, Ui, Vec2, emath::Numeric, vec2,
+    Align, Button, ComboBox, DragValue, Id, Label, Layout, Response, RichText, Ui, UiBuilder, Vec2,
+    emath::Numeric, vec2,
 };
 use lancer_core::Rgb;
+use lancer_core::geometry::portable;
 use std::ops::RangeInclusive;
 
 /// What a parameter is called, and what it means for the picture.
@@ -58,10 +60,7 @@ impl Rows<'_> {
         let language = self.language;
         let name = language.say(parameter.name);
         self.row(parameter, value, own, |ui, _, value| {
-            // Three numbers in a narrow place: what is around them gives way.
-            let spacing = ui.spacing_mut();
-            (spacing.item_spacing.x, spacing.button_padding.x) = (3.0, 2.0);
-            spacing.interact_size.x = 24.0;
+            tighten(ui);
             let mut shown = value.to_array().map(|channel| channel as f32);
             let button = ui.color_edit_button_rgb(&mut shown).accessible_name(name);
             if button.changed() {
@@ -150,9 +149,7 @@ impl Rows<'_> {
         let height = self.ui.spacing().interact_size.y;
         self.ui.horizontal(|ui| {
             let spacing = ui.spacing().item_spacing.x;
-            // A row that is too long for its panel makes none of the others longer.
-            let room = ui.available_width().min(ui.clip_rect().right() - ui.cursor().left());
-            let width = room - RESET_WIDTH - 2.0 * spacing;
+            let width = ui.available_width() - RESET_WIDTH - 2.0 * spacing;
             let label = cell(ui, vec2(width * (1.0 - CONTROL_SHARE), height), |ui| {
                 ui.add(Label::new(name).truncate()).on_hover_text(meaning)
             });
@@ -177,6 +174,14 @@ impl Rows<'_> {
 /// The brightest light that can be set: beyond, squares and sums come near to what a float can hold.
 const MAX_RADIANCE: f64 = 1e9;
 
+/// Makes room for several numbers in a row.
+pub(super) fn tighten(ui: &mut Ui) {
+    let spacing = ui.spacing_mut();
+    spacing.item_spacing.x = 4.0;
+    spacing.button_padding.x = 2.0;
+    spacing.interact_size.x = 24.0;
+}
+
 fn cell<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(size);
@@ -197,7 +202,8 @@ pub(super) fn number<N: Numeric>(
 ) -> Response {
     let height = ui.spacing().interact_size.y;
     // A field that is left as it was writes what it shows; the decimals that it does not show must not be lost by it.
-    let shown = parse_number(&number_text(value.to_f64(), language));
+    let digits = if width < ROOM_FOR_FIVE_DIGITS { 4 } else { 5 };
+    let shown = parse_number(&number_text(value.to_f64(), digits, language));
     let drag = DragValue::from_get_set(move |new| {
         if let Some(new) = new.filter(|new| Some(*new) != shown) {
             *value = N::from_f64(new);
@@ -205,22 +211,36 @@ pub(super) fn number<N: Numeric>(
         value.to_f64()
     });
     let drag = if N::INTEGRAL { drag.max_decimals(0) } else { drag };
-    ui.add(
+    // A long number is cut, and does not widen the panel.
+    let (_, rect) = ui.allocate_space(vec2(width, height));
+    let mut field =
+        ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
+    field.shrink_clip_rect(rect);
+    field.add(
         drag.range(range)
             .clamp_existing_to_range(false)
             .speed(speed)
             .update_while_editing(false)
-            .custom_formatter(move |value, _| number_text(value, language))
+            .custom_formatter(move |value, _| number_text(value, digits, language))
             .custom_parser(parse_number)
             .min_size(vec2(width, height))
             .clip_text(true),
     )
 }
 
-/// A number as short as four decimals let it be, with the language's decimal mark.
-pub(super) fn number_text(value: f64, language: Language) -> String {
-    let rounded = (value * 1e4).round() / 1e4;
-    let text = if value != 0.0 && value.abs() < 1e-3 { format!("{value:e}") } else { format!("{rounded}") };
+/// The width in points in which "0.8714" is not cut.
+const ROOM_FOR_FIVE_DIGITS: f32 = 52.0;
+
+/// A number with at most so many digits, or all of those before the decimal mark, which is that of the language.
+fn number_text(value: f64, digits: i32, language: Language) -> String {
+    // A zero before the mark counts as a digit.
+    let power = |exponent: i32| portable::pow(10.0, exponent.into());
+    let decimals = (1..digits).rev().find(|&decimals| value.abs() < power(digits - decimals)).unwrap_or(0);
+    let text = if value != 0.0 && value.abs() < 1e-3 {
+        format!("{:e}", format!("{value:.2e}").parse().unwrap_or(value))
+    } else {
+        ((value * power(decimals)).round() / power(decimals)).to_string()
+    };
     match language {
         Language::English => text,
         Language::French => text.replace('.', ","),
@@ -247,17 +267,21 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_have_the_decimal_mark_of_the_language() {
-        assert_eq!(number_text(0.1 + 0.2, Language::English), "0.3");
-        assert_eq!(number_text(2.5, Language::French), "2,5");
-        assert_eq!(number_text(1920.0, Language::French), "1920");
-        assert_eq!(number_text(2e-5, Language::English), "2e-5");
+        assert_eq!(number_text(0.1 + 0.2, 5, Language::English), "0.3");
+        assert_eq!(number_text(2.5, 5, Language::French), "2,5");
+        assert_eq!(number_text(1920.0, 5, Language::French), "1920");
+        assert_eq!(number_text(2e-5, 5, Language::English), "2e-5");
+        assert_eq!(number_text(-1.0 / 3e4, 5, Language::English), "-3.33e-5");
+        assert_eq!(number_text(0.8714, 4, Language::English), "0.871");
+        assert_eq!(number_text(-672.1234, 5, Language::English), "-672.12");
+        assert_eq!(number_text(1_234_567.8, 5, Language::English), "1234568");
     }
 
     #[test]
     fn what_is_shown_can_be_typed_again() {
         for language in Language::ALL {
             for value in [0.0, -1.5, 1e-6, 0.25, 65_535.0] {
-                assert_eq!(parse_number(&number_text(value, language)), Some(value));
+                assert_eq!(parse_number(&number_text(value, 5, language)), Some(value));
             }
         }
     }

@@ -94,8 +94,8 @@ mod tests {
     fn what_is_under_the_cursor_stays_there_while_zooming() {
         let mut view = ImageView::default();
         let at = DVec2::new(333.0, 222.0);
-        let before = view.image_at(at, IMAGE, SCREEN);
         for factor in [1.3, 2.0, 5.0, 0.4] {
+            let before = view.image_at(at, IMAGE, SCREEN);
             view.zoom_about(factor, at, IMAGE, SCREEN);
             let moved = (view.image_at(at, IMAGE, SCREEN) - before).abs() * view.scale(IMAGE, SCREEN);
             assert!(moved.max_element() <= 0.5 + 1e-9, "by {moved} pixels of the screen");

@@ -1,8 +1,8 @@
 //! Rows that only the inspector has.
 
-use super::super::fields::{Parameter, Rows, Speed, number};
+use super::super::fields::{Parameter, Rows, Speed, number, tighten};
 use crate::Phrase;
-use eframe::egui::{Button, TextEdit, Ui};
+use eframe::egui::{Button, TextEdit, TextStyle, TextWrapMode, Ui, WidgetText};
 use lancer_core::Rgb;
 use lancer_core::geometry::DVec3;
 use std::collections::HashSet;
@@ -18,9 +18,6 @@ pub(super) const LARGE: f64 = 1e9;
 const CHANNELS: [Phrase; 3] =
     [Phrase::new("red", "rouge"), Phrase::new("green", "vert"), Phrase::new("blue", "bleu")];
 
-/// Room for the button that parts the channels.
-const SPLIT_WIDTH: f32 = 30.0;
-
 impl Rows<'_> {
     /// One number for all channels, or with the button pressed one for each.
     pub(super) fn coefficient(
@@ -31,6 +28,7 @@ impl Rows<'_> {
         speed: Speed,
         split: &mut Split,
     ) {
+        const RGB: &str = "RGB";
         const SPLIT: Phrase = Phrase::new("by channel", "par canal");
         const MEANING: Phrase = Phrase::new(
             "One number each for red, green and blue",
@@ -39,10 +37,11 @@ impl Rows<'_> {
         let language = self.language;
         let (key, name) = (crate::Language::English.say(parameter.name), language.say(parameter.name));
         self.row(parameter, value, own, |ui, label, value| {
+            tighten(ui);
             let is_grey = value.r == value.g && value.g == value.b;
             let is_split = !is_grey || split.contains(key);
             let spacing = ui.spacing().item_spacing.x;
-            let room = ui.available_width() - SPLIT_WIDTH - spacing;
+            let room = ui.available_width() - button_width(ui, RGB) - spacing;
             let response = if is_split {
                 let width = (room - 2.0 * spacing) / 3.0;
                 let [red, green, blue] = [&mut value.r, &mut value.g, &mut value.b]
@@ -62,9 +61,8 @@ impl Rows<'_> {
                 }
                 response
             };
-            let button = Button::selectable(is_split, "RGB").min_size([SPLIT_WIDTH, 0.0].into());
             let button = ui
-                .add(button)
+                .add(Button::selectable(is_split, RGB))
                 .accessible_name(format!("{name}, {}", language.say(SPLIT)))
                 .on_hover_text(language.say(MEANING));
             if button.clicked() {
@@ -93,6 +91,7 @@ impl Rows<'_> {
         let language = self.language;
         let name = language.say(parameter.name);
         self.row(parameter, value, own, |ui, _, value| {
+            tighten(ui);
             let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
             let [x, y, z] = [&mut value.x, &mut value.y, &mut value.z]
                 .map(|coordinate| number(ui, language, coordinate, range.clone(), speed, width));
@@ -113,6 +112,13 @@ impl Rows<'_> {
     }
 }
 
+/// How wide a button is with this text.
+fn button_width(ui: &Ui, text: &str) -> f32 {
+    let text =
+        WidgetText::from(text).into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Button);
+    text.size().x + 2.0 * ui.spacing().button_padding.x
+}
+
 /// How fast a length changes by dragging: the large ones faster.
 pub(super) fn speed_of(length: f64) -> Speed {
     if length.is_finite() { (length.abs() * 0.005).clamp(0.005, 1e6) } else { 1.0 }
@@ -125,6 +131,7 @@ pub(super) fn numbers<const N: usize>(
     values: [(&mut f64, String); N],
 ) {
     ui.horizontal(|ui| {
+        tighten(ui);
         let spacing = ui.spacing().item_spacing.x;
         let width = (ui.available_width() - (N as f32 - 1.0) * spacing) / N as f32;
         for (value, name) in values {

@@ -15,7 +15,7 @@ use super::fields::{Parameter, Rows};
 use super::scene_tree;
 use crate::{Action, Document, Edit, Language, Phrase, Selection};
 use controls::Split;
-use eframe::egui::{Id, RichText, ScrollArea, Ui};
+use eframe::egui::{Id, Label, RichText, ScrollArea, Ui};
 use lancer_core::scene::{Light, NodeId, Scene};
 use node::LastPose;
 
@@ -50,10 +50,7 @@ pub fn show(
         ui,
         |ui| {
             let scene = document.scene();
-            ui.add(
-                eframe::egui::Label::new(RichText::new(title(selection, scene, language)).strong())
-                    .truncate(),
-            );
+            heading(ui, &title(selection, scene, language));
             ui.push_id(place_of(selection), |ui| {
                 let mut view = View { document, language, wishes: &mut wishes };
                 match selection {
@@ -90,6 +87,11 @@ fn title(selection: Selection, scene: &Scene, language: Language) -> String {
     };
     let separator = language.say(Phrase::new(": ", " : "));
     format!("{}{separator}{}", language.say(kind), scene_tree::name_of(selection, scene, language))
+}
+
+fn heading(ui: &mut Ui, text: &str) {
+    ui.add_space(ui.spacing().item_spacing.y);
+    ui.add(Label::new(RichText::new(text).strong()).truncate());
 }
 
 /// What the parts of the inspector draw from, and where they say what is wanted.

@@ -2,9 +2,9 @@
 
 use super::controls::{LARGE, numbers, speed_of};
 use super::pose::Pose;
-use super::{InspectorState, Parameter, Rows, View, Wish, material};
+use super::{InspectorState, Parameter, Rows, View, Wish, heading, material};
 use crate::{Action, Edit, Language, Phrase, Selection, panels::scene_tree};
-use eframe::egui::{ComboBox, RichText, ScrollArea, Ui};
+use eframe::egui::{ComboBox, ScrollArea, Ui};
 use lancer_core::geometry::{DMat3, DVec3, Placement, Transform};
 use lancer_core::scene::{MaterialId, NodeId, Scene};
 
@@ -40,16 +40,14 @@ pub(super) fn show(view: &mut View, ui: &mut Ui, id: NodeId, state: &mut Inspect
     }
     if let Some(id) = node.material {
         let title = scene_tree::name_of(Selection::Material(id), view.document.scene(), view.language);
+        let phrase = Phrase::new("Material: ", "Matériau : ");
         ui.separator();
-        ui.horizontal(|ui| {
-            let phrase = Phrase::new("Material: ", "Matériau : ");
-            ui.label(RichText::new(format!("{}{title}", view.language.say(phrase))).strong());
-            let alone = Phrase::new("Select the material", "Sélectionner le matériau");
-            if ui.button(view.language.say(alone)).clicked() {
-                view.wishes.push(Wish::Once(Action::Select(Selection::Material(id))));
-            }
-        });
+        heading(ui, &format!("{}{title}", view.language.say(phrase)));
         ui.push_id("material", |ui| material::show(view, ui, id, &mut state.split, false));
+        let alone = Phrase::new("Select the material", "Sélectionner le matériau");
+        if ui.button(view.language.say(alone)).clicked() {
+            view.wishes.push(Wish::Once(Action::Select(Selection::Material(id))));
+        }
     }
 }
 

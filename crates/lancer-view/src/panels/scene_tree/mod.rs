@@ -11,8 +11,8 @@ use crate::{Action, Document, Edit, Language, Phrase, Selection};
 use eframe::egui::epaint::QuadraticBezierShape;
 use eframe::egui::text::{LayoutJob, TextFormat, TextWrapping};
 use eframe::egui::{
-    Color32, Context, EventFilter, FontId, Id, Key as Button, Modifiers, Painter, Pos2, Rect, Response, Role,
-    ScrollArea, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    Align, Color32, Context, EventFilter, FontId, Id, Key as Button, Modifiers, Painter, Pos2, Rect,
+    Response, Role, ScrollArea, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 use lancer_core::scene::{NodeId, Scene};
 use rows::{Item, Key, Row, Section};
@@ -369,7 +369,9 @@ impl Drawn<'_> {
         job.append(name, 0.0, TextFormat::simple(font.clone(), strong));
         if !aside.is_empty() {
             let small = FontId::new(font.size * 0.85, font.family);
-            job.append(&aside, 6.0, TextFormat::simple(small, if is_selected { strong } else { weak }));
+            let color = if is_selected { strong } else { weak };
+            let aside_format = TextFormat { valign: Align::Center, ..TextFormat::simple(small, color) };
+            job.append(&aside, 6.0, aside_format);
         }
         let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
         let top = rect.center().y - 0.5 * galley.size().y;
