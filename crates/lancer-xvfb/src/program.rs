@@ -1,6 +1,6 @@
 //! A program on a display: its window, whether it rests, and its end.
 
-use crate::{Area, Display, Failure, Picture, wait_for};
+use crate::{Area, Display, Failure, wait_for};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -18,28 +18,11 @@ pub struct Program<'a> {
     home: TempDir,
 }
 
-/// What is seen of a program at one moment.
-struct Look {
-    sleeps: bool,
-    ticks: u64,
-    picture: Picture,
-}
-
-impl Look {
-    fn is_quiet_after(&self, before: &Self) -> bool {
-        self.sleeps
-            && self.ticks <= before.ticks + TICKS_OF_A_BLINK
-            && self.picture.different_pixels(&before.picture) <= PIXELS_OF_A_CURSOR
-    }
-}
-
-/// Processor time between two looks in which a window is drawn once, and no more.
-const TICKS_OF_A_BLINK: u64 = 3;
-
 /// The cursor of a text field, in the largest letters.
 const PIXELS_OF_A_CURSOR: usize = 100;
 
 /// Looks that must all find a program at rest: a pause between two steps of its work is shorter than all of them.
+/// With many more, the blinking of a cursor would be met by one of them, again and again.
 const QUIET_LOOKS: u32 = 8;
 
 /// The time between them. With [`QUIET_LOOKS`] it is longer than what a window waits before it takes a pointer as
@@ -165,8 +148,8 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Waits until the program rests: all of its threads sleep, hardly any processor time goes by, and the picture
-    /// stays, but for the cursor of a text field, which blinks.
+    /// Waits until the program rests: all of its threads sleep, and the picture stays, but for the cursor of a text
+    /// field, which blinks.
     ///
     /// A program that works, or wants to and must wait for a processor, is not at rest; so this is true however
     /// slow the machine is.
@@ -174,25 +157,19 @@ impl<'a> Program<'a> {
     /// # Errors
     /// It never rests, or it has ended.
     pub fn settle(&mut self) -> Result<(), Failure> {
-        let mut before = self.look()?;
+        let mut before = self.display.picture()?;
         let mut quiet_looks = 0;
         wait_for("the program to rest", || {
             std::thread::sleep(BETWEEN_LOOKS);
             if let Some(status) = self.child.try_wait()? {
                 return Err(format!("waiting for it to rest, the program ended: {status}").into());
             }
-            let now = self.look()?;
-            quiet_looks = if now.is_quiet_after(&before) { quiet_looks + 1 } else { 0 };
+            let sleeps = self.is_asleep()?;
+            let now = self.display.picture()?;
+            let is_quiet = sleeps && now.different_pixels(&before) <= PIXELS_OF_A_CURSOR;
+            quiet_looks = if is_quiet { quiet_looks + 1 } else { 0 };
             before = now;
             Ok((quiet_looks >= QUIET_LOOKS).then_some(()))
-        })
-    }
-
-    fn look(&self) -> Result<Look, Failure> {
-        Ok(Look {
-            sleeps: self.is_asleep()?,
-            ticks: processor_ticks(self.child.id())?,
-            picture: self.display.picture()?,
         })
     }
 

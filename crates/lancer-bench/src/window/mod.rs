@@ -48,7 +48,7 @@ struct Run {
     sharp: f64,
     /// From each move of the mouse, the left button held and the picture at rest, until the picture changes.
     changes: Vec<f64>,
-    /// ... until it does not change any more.
+    /// From letting the button go until the picture does not change any more.
     refinements: Vec<f64>,
     /// Between the pictures that are seen while the mouse moves on and on.
     gaps: Vec<f64>,
@@ -66,7 +66,7 @@ pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
         plan.width, plan.height
     );
     println!(
-        "| scene | window, s | first picture, s | sharp, s | move to change, ms | slowest | to sharp, ms | in a drag, 1/s | longest gap, ms | slowest answer, ms | idle |"
+        "| scene | window, s | first picture, s | sharp, s | move to change, ms | slowest | let go to sharp, ms | in a drag, 1/s | longest gap, ms | slowest answer, ms | idle |"
     );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     let mut records = Vec::new();

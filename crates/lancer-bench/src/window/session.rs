@@ -96,8 +96,8 @@ impl<'a> Session<'a> {
         Ok(answers)
     }
 
-    /// Moves the mouse once, the left button held, and lets it go. Returns the seconds until the picture changes,
-    /// and until it does for the last time.
+    /// Moves the mouse once, the left button held, and lets it go. Returns the seconds from the move until the
+    /// picture changes, and from letting go until it does for the last time.
     pub(super) fn watch_move(&mut self) -> Result<(f64, f64), Failure> {
         self.display.move_to(self.at)?;
         self.display.press(Button::Left)?;
@@ -105,9 +105,9 @@ impl<'a> Session<'a> {
         let before = self.look()?;
         let moved = self.move_on()?;
         let change = wait_for_change(|| self.look(), &before)? - moved;
-        let refinement = self.last_change()? - moved;
         self.display.release(Button::Left)?;
-        self.last_change()?;
+        let released = Instant::now();
+        let refinement = self.last_change()? - released;
         Ok((change.as_secs_f64(), refinement.as_secs_f64()))
     }
 
