@@ -46,7 +46,7 @@ impl App {
                     document.end_gesture();
                 }
             }
-            Action::UseCamera(name) => self.use_camera(name),
+            Action::UseCamera(name) => self.use_camera(name.as_deref()),
             Action::Options(options) => {
                 self.options = options;
                 self.preferences.accelerator = options.accelerator;
@@ -206,9 +206,9 @@ impl App {
     }
 
     /// Looks from one of the scene's cameras; without a name, from its main one.
-    fn use_camera(&mut self, name: Option<String>) {
+    fn use_camera(&mut self, name: Option<&str>) {
         let Some(document) = &self.document else { return };
-        if let Some(camera) = document.scene().camera_named(name.as_deref()) {
+        if let Some(camera) = document.scene().camera_named(name) {
             self.navigator.set_camera(*camera);
             self.shelf.showing = Showing::Live;
         }
