@@ -249,7 +249,7 @@ impl App {
 
     /// Moves the view so that something fills it; for nothing, everything.
     fn frame_view(&mut self, selection: Selection) {
-        let Some(frame) = self.live.frame() else { return };
+        let Some(frame) = self.frame_of_document() else { return };
         let objects = self.objects_of(selection, &frame.world);
         let of_objects = |objects: &[ObjectId]| {
             objects
