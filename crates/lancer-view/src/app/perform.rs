@@ -292,7 +292,12 @@ impl App {
         }
     }
 
+    /// Renders the picture; one that is being rendered goes on, and is shown.
     fn render(&mut self) {
+        if self.shelf.running.is_some() {
+            self.shelf.showing = Showing::Running;
+            return;
+        }
         let Some(document) = &self.document else { return };
         let scene = Arc::clone(document.scene());
         let (settings, tone) = (scene.settings, scene.tone);
