@@ -28,6 +28,8 @@ pub struct Preferences {
     pub recent: RecentFiles,
     /// Where the window was; none before the first run.
     pub window: Option<WindowPlace>,
+    /// How much larger texts and controls are than usual; none for not at all.
+    pub zoom: Option<f32>,
     /// Which panels are shown.
     pub panels: Panels,
     /// What is drawn over the picture.
@@ -295,6 +297,7 @@ mod tests {
         Preferences {
             theme: Theme::Dark,
             language: Some(Language::French),
+            zoom: Some(1.25),
             scheme: Scheme::Trackpad,
             recent,
             window: Some(WindowPlace { position: Some([3.0, -4.5]), size: [1280.0, 800.0], maximized: true }),

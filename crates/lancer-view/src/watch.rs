@@ -173,7 +173,7 @@ impl Watched {
 
     /// Whether the name of a file or directory stands in one of the texts.
     fn is_named(&self, path: &Path) -> bool {
-        let name = path.file_name().map(|name| name.as_encoded_bytes()).unwrap_or_default();
+        let name = path.file_name().map(std::ffi::OsStr::as_encoded_bytes).unwrap_or_default();
         let stands_in = |text: &Vec<u8>| text.windows(name.len()).any(|window| window == name);
         !name.is_empty() && self.texts.iter().any(stands_in)
     }

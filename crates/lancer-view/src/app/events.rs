@@ -72,7 +72,9 @@ impl App {
         }
         self.statistics = Some(world.statistics());
         self.bounds = world.bounds();
-        self.document = Some(Document::new(source, scene));
+        let document = Document::new(source, scene);
+        self.first_revision = document.revision();
+        self.document = Some(document);
         self.watch(ctx);
         self.live.forget_request();
         self.set_title(ctx);

@@ -57,6 +57,11 @@ impl App {
             match saved {
                 Saved::Done(message) => self.messages.info(message),
                 Saved::Failed(message) => self.messages.error(message),
+                Saved::As(message, path) => {
+                    self.messages.info(message);
+                    // From now on it is that file that is edited, saved and watched.
+                    self.open_now(ctx, Source::File(path));
+                }
                 Saved::Partly(message) => {
                     self.messages.warning(message);
                     self.watch(ctx);
@@ -118,8 +123,9 @@ impl App {
         })
     }
 
-    /// Notes where the window is.
+    /// Notes where the window is, and how large its texts are.
     pub(super) fn remember(&mut self, ctx: &Context) {
+        self.preferences.zoom = Some(ctx.zoom_factor()).filter(|zoom| *zoom != 1.0);
         ctx.input(|input| {
             let viewport = input.viewport();
             let maximized = viewport.maximized.unwrap_or(false);

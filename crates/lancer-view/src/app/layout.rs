@@ -29,7 +29,7 @@ impl App {
             Panel::bottom("renders").exact_size(78.0).show(ui, |ui| self.strip(ui, actions));
         }
         if self.preferences.panels.tree {
-            Panel::left("scene").default_size(290.0).size_range(220.0..=460.0).show(ui, |ui| {
+            Panel::left("scene").default_size(310.0).size_range(220.0..=460.0).show(ui, |ui| {
                 self.scene_panel(ui, actions);
             });
         }

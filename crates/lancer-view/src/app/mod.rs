@@ -34,7 +34,7 @@ use crate::picture::Readout;
 use crate::preferences::{Preferences, PreferencesFile, PreferencesWarning, WindowPlace};
 use crate::theme;
 use crate::watch::Watch;
-use crate::worker::{OpenStage, Worker};
+use crate::worker::{Frame, OpenStage, Worker};
 use asking::Asking;
 use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use lancer_core::camera::Camera;
@@ -109,6 +109,8 @@ pub struct App {
     inspector: InspectorState,
     settings: SettingsPanel,
     messages: Messages,
+    /// The document's revision when it was opened. Frames of less are of the document before.
+    first_revision: u64,
     /// What is wrong with the file that was to be shown.
     faults: Option<(Source, LoadError)>,
     palette: Option<Palette>,
@@ -132,6 +134,9 @@ impl App {
         }
         theme::install(ctx);
         theme::choose(ctx, preferences.theme);
+        if let Some(zoom) = preferences.zoom {
+            ctx.set_zoom_factor(zoom);
+        }
         let waker = ctx.clone();
         let worker = Worker::start(move || waker.request_repaint());
         let compile = CompileOptions { accelerator: preferences.accelerator, ..CompileOptions::default() };
@@ -162,6 +167,7 @@ impl App {
             inspector: InspectorState::default(),
             settings: SettingsPanel::default(),
             messages,
+            first_revision: 0,
             faults: None,
             palette: None,
             picker: None,
@@ -192,8 +198,13 @@ impl App {
         })
     }
 
+    /// The newest frame, if it shows the scene that is open and not the one before.
+    fn frame_of_document(&self) -> Option<&Frame> {
+        self.live.frame().filter(|frame| frame.revision >= self.first_revision)
+    }
+
     fn selected_objects(&self) -> Vec<ObjectId> {
-        self.live.frame().map_or_else(Vec::new, |frame| self.objects_of(self.selection, &frame.world))
+        self.frame_of_document().map_or_else(Vec::new, |frame| self.objects_of(self.selection, &frame.world))
     }
 
     /// Names the window after the scene.

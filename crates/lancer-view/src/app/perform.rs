@@ -46,7 +46,7 @@ impl App {
                     document.end_gesture();
                 }
             }
-            Action::UseCamera(name) => self.use_camera(name),
+            Action::UseCamera(name) => self.use_camera(name.as_deref()),
             Action::Options(options) => {
                 self.options = options;
                 self.preferences.accelerator = options.accelerator;
@@ -206,9 +206,9 @@ impl App {
     }
 
     /// Looks from one of the scene's cameras; without a name, from its main one.
-    fn use_camera(&mut self, name: Option<String>) {
+    fn use_camera(&mut self, name: Option<&str>) {
         let Some(document) = &self.document else { return };
-        if let Some(camera) = document.scene().camera_named(name.as_deref()) {
+        if let Some(camera) = document.scene().camera_named(name) {
             self.navigator.set_camera(*camera);
             self.shelf.showing = Showing::Live;
         }
@@ -249,7 +249,7 @@ impl App {
 
     /// Moves the view so that something fills it; for nothing, everything.
     fn frame_view(&mut self, selection: Selection) {
-        let Some(frame) = self.live.frame() else { return };
+        let Some(frame) = self.frame_of_document() else { return };
         let objects = self.objects_of(selection, &frame.world);
         let of_objects = |objects: &[ObjectId]| {
             objects
@@ -292,7 +292,12 @@ impl App {
         }
     }
 
+    /// Renders the picture; one that is being rendered goes on, and is shown.
     fn render(&mut self) {
+        if self.shelf.running.is_some() {
+            self.shelf.showing = Showing::Running;
+            return;
+        }
         let Some(document) = &self.document else { return };
         let scene = Arc::clone(document.scene());
         let (settings, tone) = (scene.settings, scene.tone);

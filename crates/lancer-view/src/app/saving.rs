@@ -8,7 +8,7 @@ use lancer_io::LoadOptions;
 use lancer_io::image::encode::{self, ImageFormat, Metadata};
 use lancer_io::output::write_atomically;
 use lancer_io::scene_file;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 const SAVED: Phrase = Phrase::new("Saved", "Enregistré :");
@@ -19,8 +19,10 @@ const NOT_SAVED: Phrase = Phrase::new(
 
 /// What a thread that saves says at its end.
 pub(crate) enum Saved {
-    /// A picture, or a scene of which nothing depends.
+    /// A picture was saved.
     Done(String),
+    /// The scene that is open was saved into a new file.
+    As(String, PathBuf),
     /// The scene that is open was saved into its own file.
     Scene {
         /// What to say.
@@ -100,7 +102,7 @@ pub(crate) fn save_picture(path: &Path, image: &Image, language: Language) -> Sa
 /// Writes a scene as a file that stands alone.
 pub(crate) fn save_scene_as(path: &Path, scene: &Scene, language: Language) -> Saved {
     match scene_file::write_whole(scene, path) {
-        Ok(()) => Saved::Done(format!("{} {}", language.say(SAVED), path.display())),
+        Ok(()) => Saved::As(format!("{} {}", language.say(SAVED), path.display()), path.to_owned()),
         Err(error) => Saved::Failed(error.to_string()),
     }
 }

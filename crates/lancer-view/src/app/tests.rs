@@ -375,3 +375,17 @@ fn what_is_chosen_is_remembered() {
     let remembered = Remembered::load(PreferencesFile::in_directory(&directory));
     assert!(remembered.preferences.overlay.grid);
 }
+
+#[test]
+fn a_built_in_scene_that_is_saved_is_that_file_from_then_on() {
+    let mut window = window("shadows");
+    command(&mut window, Command::Front);
+    let camera = app(&window).navigator.camera();
+    let path = window.state().directory.path().join("mine.yaml");
+    let ctx = window.ctx.clone();
+    window.state_mut().app.as_mut().unwrap().perform(&ctx, Action::SaveScene(path.clone()));
+    let source = Source::File(path);
+    wait(&mut window, "the file is open", |app| *app.document.as_ref().unwrap().source() == source);
+    assert_eq!(app(&window).navigator.camera(), camera);
+    assert!(!app(&window).has_unsaved_work());
+}

@@ -200,7 +200,7 @@ impl App {
 
     /// The surface that the live picture shows at a pixel.
     fn pick(&self, at: DVec2) -> Option<Feature> {
-        let world = &self.live.frame()?.world;
+        let world = &self.frame_of_document()?.world;
         let (width, height) = self.live.size;
         feature_at(world, &self.navigator.camera(), width, height, at.x, at.y).ok()?
     }
@@ -223,7 +223,7 @@ impl App {
     }
 
     fn read_live(&mut self, at: DVec2) {
-        let (Some(frame), Some(document)) = (self.live.frame(), &self.document) else { return };
+        let (Some(frame), Some(document)) = (self.frame_of_document(), &self.document) else { return };
         let size = (frame.width, frame.height);
         let whole = (frame.image.width(), frame.image.height()) == size;
         self.readout = Readout::at(

@@ -302,3 +302,18 @@ proptest! {
         prop_assert_eq!(document.revision(), revision);
     }
 }
+
+#[test]
+fn showing_all_is_one_step_and_undo_hides_again_what_was_hidden() {
+    let mut document = document();
+    let loaded = Arc::clone(document.scene());
+    for id in loaded.node_ids() {
+        document.apply(Edit::Hidden(id, true));
+        document.end_gesture();
+    }
+    let hidden = Arc::clone(document.scene());
+    document.show_all();
+    assert_eq!(document.scene(), &loaded);
+    assert_eq!(document.undo(), Some(EditKind::Hidden));
+    assert_eq!(document.scene(), &hidden);
+}

@@ -89,7 +89,9 @@ impl Sandbox {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lancer"));
         command.current_dir(self.directory.path()).args(args).env_remove("RUST_BACKTRACE");
         // Nothing here opens a window on the display of whoever runs the tests.
-        ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(|display| command.env_remove(display));
+        for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(display);
+        }
         command
     }
 

@@ -206,6 +206,7 @@ impl Sitting<'_> {
 
 impl Drop for Sitting<'_> {
     /// Tells what was to be seen when a test failed.
+    #[expect(clippy::print_stderr, reason = "a test that fails has nowhere else to say why")]
     fn drop(&mut self) {
         if std::thread::panicking() {
             match self.keep("failed") {

@@ -176,7 +176,7 @@ struct Gesture {
 impl Gesture {
     fn pass_on(&mut self, ui: &Ui, wishes: Vec<Wish>, actions: &mut Vec<Action>) {
         // What is dragged, or else typed into.
-        let in_use = ui.ctx().dragged_id().or_else(|| ui.memory(|memory| memory.focused()));
+        let in_use = ui.ctx().dragged_id().or_else(|| ui.memory(eframe::egui::Memory::focused));
         if self.control.is_some() && self.control != in_use {
             self.control = None;
             actions.push(Action::EndGesture);

@@ -307,7 +307,7 @@ fn a_node_gets_another_material_or_its_parents_in_both_languages() {
         for (entry, index) in [("gold", Some(1)), (inherited, None)] {
             click(&mut window, Role::ComboBox, list);
             click(&mut window, Role::Button, entry);
-            assert_eq!(node_of(&window).material.map(|id| id.index()), index);
+            assert_eq!(node_of(&window).material.map(lancer_core::scene::MaterialId::index), index);
         }
     }
 }

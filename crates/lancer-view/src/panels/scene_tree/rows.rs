@@ -144,7 +144,7 @@ pub(super) fn list(scene: &Scene, unfolded: &HashSet<Key>) -> Vec<Row> {
                 Section::Objects => list_nodes(scene, unfolded, &mut rows),
                 Section::Lights => list_plain(section, (0..scene.lights.len()).map(Item::Light), &mut rows),
                 Section::Materials => {
-                    list_plain(section, scene.material_ids().map(Item::Material), &mut rows)
+                    list_plain(section, scene.material_ids().map(Item::Material), &mut rows);
                 }
                 Section::Cameras => {
                     let named = (0..scene.cameras.len()).map(|index| Item::Camera(Some(index)));

@@ -209,7 +209,9 @@ fn the_tabulator_stops_at_one_row_and_goes_on() {
     let mut window = window(Language::English);
     let focused = |window: &Harness<World>| {
         let rows = window.get_all_by_role(Role::TreeItem);
-        rows.filter(|row| row.is_focused()).filter_map(|row| row.accesskit_node().label()).collect::<Vec<_>>()
+        rows.filter(egui_kittest::Node::is_focused)
+            .filter_map(|row| row.accesskit_node().label())
+            .collect::<Vec<_>>()
     };
     press(&mut window, Button::Tab);
     assert_eq!(focused(&window), ["Objects"]);
