@@ -49,7 +49,7 @@ impl App {
     }
 
     fn opened(&mut self, ctx: &Context, opened: Opened) {
-        let Opened { source, loaded, world, .. } = opened;
+        let Opened { source, loaded, .. } = opened;
         let Loaded { scene, warnings, .. } = loaded;
         self.opening = None;
         self.faults = None;
@@ -70,8 +70,6 @@ impl App {
         if let Some(path) = source.path() {
             self.preferences.recent.add(path);
         }
-        self.statistics = Some(world.statistics());
-        self.bounds = world.bounds();
         let document = Document::new(source, scene);
         self.first_revision = document.revision();
         self.document = Some(document);

@@ -39,8 +39,8 @@ use asking::Asking;
 use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
-use lancer_core::geometry::{Bounds, DVec2};
-use lancer_core::world::{CompileOptions, ObjectId, WorldStatistics};
+use lancer_core::geometry::DVec2;
+use lancer_core::world::{CompileOptions, ObjectId};
 use lancer_io::LoadOptions;
 use lancer_io::diagnostics::LoadError;
 use live::Live;
@@ -89,8 +89,6 @@ pub struct App {
     saver: Saver,
     document: Option<Document>,
     navigator: Navigator,
-    statistics: Option<WorldStatistics>,
-    bounds: Bounds,
     live: Live,
     shelf: Shelf,
     selection: Selection,
@@ -151,8 +149,6 @@ impl App {
             saver: Saver::default(),
             document: None,
             navigator: Navigator::new(Camera::default()),
-            statistics: None,
-            bounds: Bounds::EMPTY,
             live: Live::default(),
             shelf: Shelf::default(),
             selection: Selection::None,

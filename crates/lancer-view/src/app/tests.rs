@@ -283,7 +283,7 @@ fn a_scene_file_is_read_again_when_it_changes_and_keeps_its_comments_when_it_is_
     };
     std::fs::write(&path, text(1.0)).unwrap();
     let mut window = window_on(&path);
-    let size = |app: &App| app.bounds.diagonal();
+    let size = |app: &App| app.live.frame().map_or(0.0, |frame| frame.world.bounds().diagonal());
     let small = size(app(&window));
     std::fs::write(&path, text(2.0)).unwrap();
     wait(&mut window, "the change is seen", |app| size(app) > 1.5 * small);

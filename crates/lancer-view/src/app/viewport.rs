@@ -18,6 +18,12 @@ const RENDERED: Phrase = Phrase::new("Rendered picture", "Image rendue");
 const SPLIT: Phrase = Phrase::new("Split between the two pictures", "Limite entre les deux images");
 const DROP: Phrase = Phrase::new("Drop to open", "Déposer pour ouvrir");
 
+/// What is around a picture, without a hue of its own: beside white, a picture would look dark.
+const LIGHT_SURROUND: Color32 = Color32::from_gray(206);
+
+/// The same in a dark window.
+const DARK_SURROUND: Color32 = Color32::from_gray(20);
+
 /// Turns of a wheel that a pinch to twice the size counts as.
 const STEPS_PER_PINCH: f32 = 8.0;
 
@@ -33,7 +39,8 @@ impl App {
         let rect = ui.available_rect_before_wrap();
         ui.allocate_rect(rect, Sense::hover());
         ui.set_clip_rect(rect);
-        ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+        let surround = if ui.visuals().dark_mode { DARK_SURROUND } else { LIGHT_SURROUND };
+        ui.painter().rect_filled(rect, 0.0, surround);
         self.readout = None;
         match self.shelf.showing {
             Showing::Live => self.live_viewport(ui, rect, actions),

@@ -178,7 +178,7 @@ const MAX_THREADS: u32 = 1024;
 
 fn accelerator_name(accelerator: Accelerator) -> Phrase {
     match accelerator {
-        Accelerator::Bvh => Phrase::new("Boxes (fastest)", "Boîtes (la plus rapide)"),
+        Accelerator::Bvh => Phrase::new("Boxes (fastest)", "Boîtes (rapide)"),
         Accelerator::KdTree => Phrase::new("k-d tree", "Arbre k-d"),
         Accelerator::BruteForce => Phrase::new("None: try everything", "Aucune : tout essayer"),
     }
