@@ -1,6 +1,6 @@
 //! Takes the pictures of the window that the documents show: both themes, both languages, two sizes.
 //!
-//! `cargo run -p lancer-xvfb --example screenshots -- target/release/lancer docs/images`
+//! `cargo run -p lancer-xvfb --example screenshots -- target/release/lancer docs/images [NAME...]`
 
 use lancer_xvfb::{Display, Failure, Program};
 use std::path::Path;
@@ -70,9 +70,10 @@ const SHOTS: [Shot; 6] = [
 fn main() -> Result<(), Failure> {
     let mut arguments = std::env::args_os().skip(1);
     let (Some(lancer), Some(directory)) = (arguments.next(), arguments.next()) else {
-        return Err("usage: screenshots LANCER DIRECTORY".into());
+        return Err("usage: screenshots LANCER DIRECTORY [NAME...]".into());
     };
-    for shot in &SHOTS {
+    let only = arguments.collect::<Vec<_>>();
+    for shot in SHOTS.iter().filter(|shot| only.is_empty() || only.iter().any(|name| name == shot.name)) {
         let display = Display::start(shot.size.0, shot.size.1)?;
         let command = &mut Command::new(&lancer);
         let mut program = Program::start(&display, command.arg(shot.scene).env("LANG", shot.language))?;
