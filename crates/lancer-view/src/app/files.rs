@@ -90,9 +90,10 @@ impl App {
         let source = self.document.as_ref().map(Document::source);
         let stem = source.map_or_else(|| "picture".to_owned(), Source::stem);
         let open = source.and_then(Source::path);
-        let beside = open.and_then(Path::parent).map(Path::to_owned);
+        // A bare name has an empty parent, which means here.
+        let beside = open.and_then(Path::parent).filter(|parent| !parent.as_os_str().is_empty());
         let here = || std::env::current_dir().unwrap_or_default();
-        let directory = self.directory.clone().or(beside).unwrap_or_else(here);
+        let directory = self.directory.clone().or(beside.map(Path::to_owned)).unwrap_or_else(here);
         let name = match purpose {
             Purpose::Open => String::new(),
             Purpose::SavePicture => format!("{stem}.png"),

@@ -112,7 +112,7 @@ enum Wish {
 impl View<'_> {
     fn scene(&mut self, ui: &mut Ui) {
         const AMBIENT: Parameter = Parameter {
-            name: Phrase::new("L_a ambient light", "L_a lumière ambiante"),
+            name: Phrase::new("L_a ambient", "L_a ambiante"),
             meaning: Phrase::new(
                 "L_a: the ambient light of the whole scene. Each surface adds c_a L_a k_a S.",
                 "L_a : la lumière ambiante de toute la scène. Chaque surface ajoute c_a L_a k_a S.",

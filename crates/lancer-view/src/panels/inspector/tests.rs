@@ -359,8 +359,8 @@ fn lights_are_added_and_removed_in_both_languages() {
 #[test]
 fn the_light_and_the_background_of_the_scene_are_set_in_both_languages() {
     for (language, ambient, background) in [
-        (Language::English, "L_a ambient light, green", "Background, blue"),
-        (Language::French, "L_a lumière ambiante, vert", "Arrière-plan, bleu"),
+        (Language::English, "L_a ambient, green", "Background, blue"),
+        (Language::French, "L_a ambiante, vert", "Arrière-plan, bleu"),
     ] {
         let mut window = window(|_| Selection::None, language);
         type_number(&mut window, ambient, "0.5");

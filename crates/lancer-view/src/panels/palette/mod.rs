@@ -176,27 +176,31 @@ impl Palette {
             ui.weak(language.say(NONE));
         }
         let mut chosen = None;
-        ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
-            for (i, entry) in entries.iter().enumerate() {
-                let label = entry.label(view.commands, language);
-                let is_selected = i == self.selected;
-                let note = RichText::new(entry.note(language));
-                let button = Button::selectable(is_selected, label.as_str())
-                    .right_text(if is_selected { note } else { note.weak() })
-                    .min_size(vec2(ui.available_width(), 0.0));
-                let row = ui.add(button).accessible_name(label);
-                row.ctx.accesskit_node_builder(row.id, |node| {
-                    node.set_role(Role::ListBoxOption);
-                    node.set_selected(is_selected);
-                });
-                if is_selected && moved {
-                    row.scroll_to_me(Some(Align::Center));
+        ScrollArea::vertical()
+            .max_height(HEIGHT)
+            .min_scrolled_height(HEIGHT)
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                for (i, entry) in entries.iter().enumerate() {
+                    let label = entry.label(view.commands, language);
+                    let is_selected = i == self.selected;
+                    let note = RichText::new(entry.note(language));
+                    let button = Button::selectable(is_selected, label.as_str())
+                        .right_text(if is_selected { note } else { note.weak() })
+                        .min_size(vec2(ui.available_width(), 0.0));
+                    let row = ui.add(button).accessible_name(label);
+                    row.ctx.accesskit_node_builder(row.id, |node| {
+                        node.set_role(Role::ListBoxOption);
+                        node.set_selected(is_selected);
+                    });
+                    if is_selected && moved {
+                        row.scroll_to_me(Some(Align::Center));
+                    }
+                    if row.clicked() {
+                        chosen = Some(entry.clone());
+                    }
                 }
-                if row.clicked() {
-                    chosen = Some(entry.clone());
-                }
-            }
-        });
+            });
         chosen
     }
 }
