@@ -48,7 +48,7 @@ impl App {
             self.save_scene(ctx);
         } else if discard {
             match asking {
-                Asking::Open(source) => self.open_now(ctx, source),
+                Asking::Open(source) => self.open_now(source),
                 Asking::Quit => {
                     self.may_close = true;
                     ctx.send_viewport_cmd(ViewportCommand::Close);

@@ -24,19 +24,19 @@ impl App {
     pub(super) fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
         if let Some(path) = dropped {
-            self.open(ctx, Source::File(path));
+            self.open(Source::File(path));
         }
     }
 
     /// Reads the open file again when another program wrote it.
-    pub(super) fn take_changes_on_disk(&mut self, ctx: &Context) {
+    pub(super) fn take_changes_on_disk(&mut self) {
         let has_changed = self.watch.as_ref().is_some_and(|watch| !watch.take_changes().is_empty());
         let Some(document) = self.document.as_ref().filter(|_| has_changed) else { return };
         if document.is_changed() {
             self.messages.warning(self.language().say(CHANGED_ON_DISK));
         } else {
             let source = document.source().clone();
-            self.open_now(ctx, source);
+            self.open_now(source);
         }
     }
 
@@ -60,7 +60,7 @@ impl App {
                 Saved::As(message, path) => {
                     self.messages.info(message);
                     // From now on it is that file that is edited, saved and watched.
-                    self.open_now(ctx, Source::File(path));
+                    self.open_now(Source::File(path));
                 }
                 Saved::Partly(message) => {
                     self.messages.warning(message);
@@ -117,10 +117,13 @@ impl App {
     /// Whether the scene has changes that would be lost; the numbers of a render are none.
     pub(super) fn has_unsaved_work(&self) -> bool {
         self.document.as_ref().is_some_and(|document| {
-            let saved = document.saved();
-            let mut scene = Scene::clone(document.scene());
-            (scene.settings, scene.tone) = (saved.settings, saved.tone);
-            document.is_changed() && scene != **saved
+            // The whole scene is copied and compared only where something was edited at all.
+            document.is_changed() && {
+                let saved = document.saved();
+                let mut scene = Scene::clone(document.scene());
+                (scene.settings, scene.tone) = (saved.settings, saved.tone);
+                scene != **saved
+            }
         })
     }
 

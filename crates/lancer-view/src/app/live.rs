@@ -1,5 +1,7 @@
 //! The live picture: what the viewport asks of the worker, and what it shows of the answers.
 
+use super::Selection;
+use super::perform::objects_of;
 use crate::document::Document;
 use crate::navigation::Navigator;
 use crate::overlay::{self, OverlayInput, OverlayOptions};
@@ -8,8 +10,8 @@ use crate::worker::{Channel, Frame, ViewRequest, Worker};
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use lancer_core::film::{Image, Tone};
 use lancer_core::geometry::DVec3;
-use lancer_core::scene::Settings;
-use lancer_core::world::{CompileOptions, ObjectId};
+use lancer_core::scene::{Scene, Settings};
+use lancer_core::world::CompileOptions;
 use std::sync::Arc;
 
 /// The live picture.
@@ -42,11 +44,10 @@ struct DrawnOverlay {
 }
 
 /// What decides an overlay, beside the frame that its number stands for.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct OverlayKey {
     pub(crate) options: OverlayOptions,
-    pub(crate) selected: Vec<ObjectId>,
-    pub(crate) selected_light: Option<usize>,
+    pub(crate) selection: Selection,
     pub(crate) interest: DVec3,
     pub(crate) dark: bool,
     pub(crate) pixels_per_point: f32,
@@ -178,12 +179,17 @@ impl Live {
     }
 
     /// Exposure is for radiance: depths and normals are shown as they are.
-    fn tone_of(&self, tone: Tone) -> Tone {
+    pub(crate) fn tone_of(&self, tone: Tone) -> Tone {
         if self.channel == Channel::Picture { tone } else { Tone::default() }
     }
 
     /// The overlay of the newest frame; drawn again only where something in it changed.
-    pub(crate) fn overlay(&mut self, ctx: &Context, key: OverlayKey) -> Option<&TextureHandle> {
+    pub(crate) fn overlay(
+        &mut self,
+        ctx: &Context,
+        scene: &Scene,
+        key: OverlayKey,
+    ) -> Option<&TextureHandle> {
         let shown = self.shown.as_ref()?;
         let key = OverlayKey { frame: shown.serial, ..key };
         if self.overlay.as_ref().is_none_or(|drawn| drawn.of != key) {
@@ -195,8 +201,11 @@ impl Live {
                 width: frame.width,
                 height: frame.height,
                 options: &key.options,
-                selected: &key.selected,
-                selected_light: key.selected_light,
+                selected: &objects_of(scene, key.selection, &frame.world),
+                selected_light: match key.selection {
+                    Selection::Light(index) => Some(index),
+                    _ => None,
+                },
                 interest: key.interest,
                 pixels_per_point: key.pixels_per_point,
                 dark: key.dark,

@@ -40,7 +40,7 @@ use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
 use lancer_core::geometry::DVec2;
-use lancer_core::world::{CompileOptions, ObjectId};
+use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
 use lancer_io::diagnostics::LoadError;
 use live::Live;
@@ -199,10 +199,6 @@ impl App {
         self.live.frame().filter(|frame| frame.revision >= self.first_revision)
     }
 
-    fn selected_objects(&self) -> Vec<ObjectId> {
-        self.frame_of_document().map_or_else(Vec::new, |frame| self.objects_of(self.selection, &frame.world))
-    }
-
     /// Names the window after the scene.
     fn set_title(&mut self, ctx: &Context) {
         let title = match &self.document {
@@ -223,7 +219,7 @@ impl App {
         self.take_events(ctx);
         self.take_saved(ctx);
         self.take_dropped(ctx);
-        self.take_changes_on_disk(ctx);
+        self.take_changes_on_disk();
         self.hold_window(ctx);
     }
 

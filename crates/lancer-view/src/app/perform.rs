@@ -14,9 +14,9 @@ use crate::picture::color_image;
 use crate::preferences::Theme;
 use crate::worker::{Channel, RenderRequest};
 use eframe::egui::{Context, ViewportCommand};
-use lancer_core::film::{Image, Tone};
+use lancer_core::film::Image;
 use lancer_core::geometry::{Bounds, DVec2};
-use lancer_core::scene::NodeId;
+use lancer_core::scene::{NodeId, Scene};
 use lancer_core::world::{ObjectId, World};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -36,16 +36,12 @@ impl App {
     pub(super) fn perform(&mut self, ctx: &Context, action: Action) {
         match action {
             Action::Command(command) => self.command(ctx, command),
-            Action::Open(source) => self.open(ctx, source),
-            Action::OpenPath(path) => self.open(ctx, Source::File(path)),
+            Action::Open(source) => self.open(source),
+            Action::OpenPath(path) => self.open(Source::File(path)),
             Action::Select(selection) => self.selection = selection,
             Action::Frame(selection) => self.frame_view(selection),
             Action::Edit(edit) => self.edit(edit),
-            Action::EndGesture => {
-                if let Some(document) = &mut self.document {
-                    document.end_gesture();
-                }
-            }
+            Action::EndGesture => self.end_gesture(),
             Action::UseCamera(name) => self.use_camera(name.as_deref()),
             Action::Options(options) => {
                 self.options = options;
@@ -64,23 +60,23 @@ impl App {
     }
 
     /// Opens a scene, after asking what is to become of changes that no file holds.
-    pub(super) fn open(&mut self, ctx: &Context, source: Source) {
+    pub(super) fn open(&mut self, source: Source) {
         if self.has_unsaved_work() {
             self.asking = Some(Asking::Open(source));
         } else {
-            self.open_now(ctx, source);
+            self.open_now(source);
         }
     }
 
     /// Opens a scene, whatever becomes of changes.
-    pub(super) fn open_now(&mut self, _ctx: &Context, source: Source) {
+    pub(super) fn open_now(&self, source: Source) {
         self.worker.open(source, self.load.clone());
     }
 
     fn command(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::Open => self.ask_for_file(ctx, Purpose::Open),
-            Command::Reload => self.reload(ctx),
+            Command::Reload => self.reload(),
             Command::SaveScene => self.save_scene(ctx),
             Command::SaveSceneAs => self.ask_for_file(ctx, Purpose::SaveScene),
             Command::SavePicture => self.ask_for_file(ctx, Purpose::SavePicture),
@@ -178,10 +174,10 @@ impl App {
         }
     }
 
-    fn reload(&mut self, ctx: &Context) {
+    fn reload(&mut self) {
         if let Some(document) = &self.document {
             let source = document.source().clone();
-            self.open(ctx, source);
+            self.open(source);
         }
     }
 
@@ -250,7 +246,8 @@ impl App {
     /// Moves the view so that something fills it; for nothing, everything.
     fn frame_view(&mut self, selection: Selection) {
         let Some(frame) = self.frame_of_document() else { return };
-        let objects = self.objects_of(selection, &frame.world);
+        let Some(document) = &self.document else { return };
+        let objects = objects_of(document.scene(), selection, &frame.world);
         let of_objects = |objects: &[ObjectId]| {
             objects
                 .iter()
@@ -259,36 +256,15 @@ impl App {
                 .fold(Bounds::EMPTY, Bounds::union)
         };
         let bounds = match selection {
-            Selection::Light(index) => {
-                let light =
-                    self.document.as_ref().and_then(|document| document.scene().lights.get(index).cloned());
-                light.map_or(Bounds::EMPTY, |light| {
-                    frame.world.bounds().union(Bounds::of_points([light.position]))
-                })
-            }
+            Selection::Light(index) => document.scene().lights.get(index).map_or(Bounds::EMPTY, |light| {
+                frame.world.bounds().union(Bounds::of_points([light.position]))
+            }),
             _ => of_objects(&objects),
         };
         let bounds = if bounds.is_empty() { frame.world.bounds() } else { bounds };
         if !bounds.is_empty() {
             self.navigator.frame(bounds, self.aspect());
             self.shelf.showing = Showing::Live;
-        }
-    }
-
-    /// The objects that a selection draws; for nothing, none.
-    pub(super) fn objects_of(&self, selection: Selection, world: &World) -> Vec<ObjectId> {
-        let Some(document) = &self.document else { return Vec::new() };
-        let ids = world.object_ids();
-        match selection {
-            Selection::None | Selection::Light(_) => Vec::new(),
-            Selection::Material(material) => {
-                ids.filter(|&id| world.object(id).material() == material).collect()
-            }
-            Selection::Node(node) => {
-                let below = descendants(document.scene(), node);
-                ids.filter(|&id| below.get(world.object(id).node().index()).copied().unwrap_or(false))
-                    .collect()
-            }
         }
     }
 
@@ -328,8 +304,7 @@ impl App {
     fn picture(&self) -> Option<Image> {
         if self.shelf.showing == Showing::Live {
             let frame = self.live.frame().filter(|_| self.live.is_final())?;
-            let tone = if self.live.channel == Channel::Picture { self.tone() } else { Tone::default() };
-            Some(tone.expose(&frame.image))
+            Some(self.live.tone_of(self.tone()).expose(&frame.image))
         } else {
             self.shelf.shown().map(super::shelf::Kept::shown_image)
         }
@@ -398,7 +373,7 @@ impl App {
     }
 
     /// The scene, with the view as its camera.
-    fn scene_with_view(&self, scene: &lancer_core::scene::Scene) -> lancer_core::scene::Scene {
+    fn scene_with_view(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         scene.camera = self.navigator.camera();
         scene
@@ -414,8 +389,21 @@ fn waker(ctx: &Context) -> impl FnOnce() + Send + 'static {
     move || ctx.request_repaint()
 }
 
+/// The objects that a selection draws; for nothing, none.
+pub(super) fn objects_of(scene: &Scene, selection: Selection, world: &World) -> Vec<ObjectId> {
+    let ids = world.object_ids();
+    match selection {
+        Selection::None | Selection::Light(_) => Vec::new(),
+        Selection::Material(material) => ids.filter(|&id| world.object(id).material() == material).collect(),
+        Selection::Node(node) => {
+            let below = descendants(scene, node);
+            ids.filter(|&id| below.get(world.object(id).node().index()).copied().unwrap_or(false)).collect()
+        }
+    }
+}
+
 /// Which nodes are a node or lie below it. Shape: `[nodes]`.
-fn descendants(scene: &lancer_core::scene::Scene, node: NodeId) -> Vec<bool> {
+fn descendants(scene: &Scene, node: NodeId) -> Vec<bool> {
     let mut below = vec![false; scene.nodes().len()];
     let mut pending = vec![node];
     while let Some(id) = pending.pop() {

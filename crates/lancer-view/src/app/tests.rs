@@ -263,8 +263,7 @@ fn a_broken_file_is_told_with_its_line_and_the_picture_stays() {
     let mut window = window("whitted");
     let path = window.state().directory.path().join("broken.yaml");
     std::fs::write(&path, "format: 1\nobjects:\n  - {shape: sphrere}\n").unwrap();
-    let ctx = window.ctx.clone();
-    window.state_mut().app.as_mut().unwrap().open(&ctx, Source::File(path));
+    window.state_mut().app.as_mut().unwrap().open(Source::File(path));
     wait(&mut window, "the fault is told", |app| app.faults.is_some());
     window.run_steps(2);
     assert!(window.query_all_by_label_contains("sphrere").count() > 0);
@@ -309,13 +308,12 @@ fn changes_are_not_lost_without_a_question() {
         let app = window.state_mut().app.as_mut().unwrap();
         app.edit(crate::Edit::Ambient(lancer_core::Rgb::grey(0.7)));
     }
-    let ctx = window.ctx.clone();
-    window.state_mut().app.as_mut().unwrap().open(&ctx, other.clone());
+    window.state_mut().app.as_mut().unwrap().open(other.clone());
     window.run_steps(2);
     window.get_by_label("Go back").click();
     window.run_steps(2);
     assert_eq!(app(&window).document.as_ref().unwrap().source().title(), "whitted");
-    window.state_mut().app.as_mut().unwrap().open(&ctx, other);
+    window.state_mut().app.as_mut().unwrap().open(other);
     window.run_steps(2);
     window.get_by_label("Discard").click();
     wait(&mut window, "the other is open", |app| app.document.as_ref().unwrap().source().title() == "glass");

@@ -86,21 +86,16 @@ impl App {
     }
 
     fn paint_overlay(&mut self, ui: &Ui, picture: Rect) {
-        let selected = self.selected_objects();
-        let selected_light = match self.selection {
-            Selection::Light(index) => Some(index),
-            _ => None,
-        };
+        let Some(document) = &self.document else { return };
         let key = OverlayKey {
             options: self.preferences.overlay,
-            selected,
-            selected_light,
+            selection: self.selection,
             interest: self.navigator.point_of_interest(),
             dark: self.live.is_dark(),
             pixels_per_point: ui.ctx().pixels_per_point(),
             frame: 0,
         };
-        if let Some(texture) = self.live.overlay(ui.ctx(), key) {
+        if let Some(texture) = self.live.overlay(ui.ctx(), document.scene(), key) {
             let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             ui.painter().image(texture.id(), picture, uv, Color32::WHITE);
         }

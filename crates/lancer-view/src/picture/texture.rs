@@ -1,7 +1,10 @@
 //! An image as textures: tone applied, cut to what the graphics driver takes.
 
-use eframe::egui::{Color32, ColorImage, Context, Pos2, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{
+    Color32, ColorImage, Context, ImageData, Pos2, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
+};
 use lancer_core::film::{Image, Tone, to_srgb8};
+use std::sync::Arc;
 
 /// Texels along the side of one texture; every driver takes this much.
 const SIDE: u32 = 2048;
@@ -27,7 +30,7 @@ impl PictureTexture {
     pub fn new(ctx: &Context, image: &Image, tone: Tone, smooth: bool, previous: Option<Self>) -> Self {
         let magnified = if smooth { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
         let options = TextureOptions { minification: TextureOptions::LINEAR.minification, ..magnified };
-        let whole = color_image(&tone.expose(image));
+        let whole = Arc::new(color_image(&tone.expose(image)));
         let (width, height) = (image.width(), image.height());
         let mut old = previous.map_or_else(Vec::new, |previous| previous.parts).into_iter();
         let mut parts = Vec::new();
@@ -35,10 +38,11 @@ impl PictureTexture {
             for x in (0..width).step_by(SIDE as usize) {
                 let (w, h) = (SIDE.min(width - x), SIDE.min(height - y));
                 let part = if (w, h) == (width, height) {
-                    whole.clone()
+                    Arc::clone(&whole)
                 } else {
-                    whole.region_by_pixels([x as usize, y as usize], [w as usize, h as usize])
+                    Arc::new(whole.region_by_pixels([x as usize, y as usize], [w as usize, h as usize]))
                 };
+                let part = ImageData::Color(part);
                 let texture = match old.next() {
                     Some(Part { mut texture, .. }) => {
                         texture.set(part, options);
