@@ -35,8 +35,8 @@ impl Pose {
         let rotation = DMat3::from_cols(x / scale.x, y / scale.y, z / scale.z);
         let pose = Self {
             translation: transform.translation(),
-            degrees: degrees_of(rotation).map(tidy),
-            scale: scale.map(tidy),
+            degrees: degrees_of(rotation).map(|degrees| tidy(degrees, 1e-10)),
+            scale: scale.map(|factor| tidy(factor, 1e-12 * factor.abs())),
         };
         let again = columns(pose.transform().linear());
         let is_close = columns(linear)
@@ -78,10 +78,11 @@ fn degrees_of(rotation: DMat3) -> DVec3 {
     DVec3::new(x, y, z).map(f64::to_degrees)
 }
 
-/// The number that was meant: 30 for 30.000000000000004. Not -0 either.
-fn tidy(value: f64) -> f64 {
+/// The number that was meant, where one of ten decimals is no further off than `slack`: 30 for 30.000000000000004.
+/// Not -0 either.
+fn tidy(value: f64, slack: f64) -> f64 {
     let rounded = (value * 1e10).round() / 1e10;
-    if value.abs() < 1e3 && rounded != 0.0 || value == 0.0 { rounded + 0.0 } else { value }
+    if (rounded - value).abs() <= slack { rounded + 0.0 } else { value }
 }
 
 #[cfg(test)]
@@ -120,13 +121,22 @@ mod tests {
         assert_eq!(Pose::of(&Transform::scale(DVec3::new(1.0, f64::NAN, 1.0))), None);
     }
 
+    #[test]
+    fn tiny_factors_keep_all_of_their_digits() {
+        for factor in [1.234_567_890_123e-2, 1.234_567_890_123e-7] {
+            let shrink = Transform::scale(DVec3::splat(factor));
+            let pose = Pose::of(&shrink).expect("it neither shears nor flattens");
+            assert!((pose.scale / factor - DVec3::ONE).abs().max_element() < 1e-12, "{}", pose.scale);
+        }
+    }
+
     proptest! {
         #[test]
         fn a_pose_of_any_turns_and_factors_makes_the_same_transform(
             degrees in prop::array::uniform3(-360.0..360.0_f64),
-            scale in prop::array::uniform3((0.01..100.0_f64, any::<bool>())),
+            scale in prop::array::uniform3((-6.0..3.0_f64, any::<bool>())),
         ) {
-            let scale = scale.map(|(factor, mirrored)| if mirrored { -factor } else { factor });
+            let scale = scale.map(|(tens, mirrored)| 10.0_f64.powf(tens) * if mirrored { -1.0 } else { 1.0 });
             let pose = Pose {
                 translation: DVec3::new(1.0, 2.0, 3.0),
                 degrees: degrees.into(),
