@@ -3,7 +3,7 @@
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::image::load_texture;
 use crate::limits::Limits;
-use crate::model::{self, ModelFormat};
+use crate::model;
 use crate::resolver::Resolver;
 use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
@@ -54,12 +54,17 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         let mut assets = Files { resolver };
         return scene_file::read(path, &bytes, &options.overrides, &mut assets, &options.limits);
     }
-    if ModelFormat::of_path(path).is_none() {
+    if !model::is_model_file(path) {
         return Err(unknown_kind(path));
     }
     let mut model = model::load(path, &resolver)?;
-    let warnings = std::mem::take(&mut model.warnings);
+    let mut warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
+    if scene.tone.exposure != 0.0 {
+        let stops = scene.tone.exposure;
+        let message = format!("its own lights are far from 1, so the picture is exposed by {stops:+} stops");
+        warnings.push(Diagnostic::new(path, message).with_hint("--exposure chooses otherwise"));
+    }
     scene_file::apply_overrides(&mut scene, &options.overrides)?;
     Ok(Loaded { warnings, ..Loaded::from(scene) })
 }
@@ -71,9 +76,8 @@ pub fn is_scene_file(path: &Path) -> bool {
 }
 
 fn unknown_kind(path: &Path) -> LoadError {
-    let models = ModelFormat::ALL.iter().map(|format| format.extension());
-    let known =
-        SCENE_EXTENSIONS.into_iter().chain(models).map(|known| format!(".{known}")).collect::<Vec<_>>();
+    let known = SCENE_EXTENSIONS.into_iter().chain(model::model_extensions());
+    let known = known.map(|known| format!(".{known}")).collect::<Vec<_>>();
     let hint = format!("the kind of a file is told by its name: {}", known.join(", "));
     Diagnostic::new(path, "is neither a scene file nor a model of a known format").with_hint(hint).into()
 }

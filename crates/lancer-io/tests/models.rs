@@ -80,7 +80,7 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn an_unknown_extension_is_an_error_that_lists_what_is_read() {
-    let error = Files::new().with("a.stl", "solid").load("a.stl").unwrap_err().to_string();
+    let error = Files::new().with("a.3ds", "solid").load("a.3ds").unwrap_err().to_string();
     assert!(error.contains(".obj, .ply"), "{error}");
 }
 

@@ -51,6 +51,7 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
         materials: library.materials,
         origin: meshes.origin,
         warnings,
+        ..Model::default()
     })
 }
 

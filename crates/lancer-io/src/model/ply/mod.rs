@@ -54,5 +54,6 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
         materials: Vec::new(),
         origin: meshes.origin,
         warnings,
+        ..Model::default()
     })
 }
