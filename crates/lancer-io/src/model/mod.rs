@@ -5,13 +5,16 @@
 //! [`ModelFormat`] and a line in [`load`].
 
 mod mtl;
+mod normals;
 mod obj;
+mod options;
 mod ply;
 mod polygons;
 mod report;
 mod text;
 mod triangulate;
 
+pub use options::{Crease, ModelOptions};
 pub use ply::write_ply;
 
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -116,10 +119,10 @@ impl Model {
 ///
 /// # Errors
 /// The format is unknown, the file cannot be read or is at fault, or it holds nothing to draw.
-pub fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+pub fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     match ModelFormat::of_path(path) {
-        Some(ModelFormat::Obj) => obj::load(path, resolver),
-        Some(ModelFormat::Ply) => ply::load(path, resolver),
+        Some(ModelFormat::Obj) => obj::load(path, resolver, options),
+        Some(ModelFormat::Ply) => ply::load(path, resolver, options),
         None => {
             let formats = ModelFormat::ALL.map(|format| format!(".{}", format.extension())).join(", ");
             let message = "is not a model of a format that is read";
