@@ -3,7 +3,7 @@
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::image::load_texture;
 use crate::limits::Limits;
-use crate::model;
+use crate::model::{self, ModelOptions};
 use crate::resolver::Resolver;
 use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
@@ -18,6 +18,8 @@ pub struct LoadOptions {
     pub limits: Limits,
     /// Whether it may refer to files outside of its own directory.
     pub allow_outside: bool,
+    /// How its models are read, where a scene file does not say it of one.
+    pub model: ModelOptions,
     /// What is to be read in place of what it says.
     pub overrides: Vec<Override>,
 }
@@ -51,13 +53,13 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     let resolver = Resolver::for_file(path, options.allow_outside, options.limits);
     if is_scene_file(path) {
         let bytes = resolver.read(path)?;
-        let mut assets = Files { resolver };
+        let mut assets = Files { resolver, options: options.model };
         return scene_file::read(path, &bytes, &options.overrides, &mut assets, &options.limits);
     }
     if !model::is_model_file(path) {
         return Err(unknown_kind(path));
     }
-    let mut model = model::load(path, &resolver)?;
+    let mut model = model::load(path, &resolver, &options.model)?;
     let mut warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
     if scene.tone.exposure != 0.0 {
@@ -85,6 +87,7 @@ fn unknown_kind(path: &Path) -> LoadError {
 /// The models and images of a scene file, from disk.
 struct Files {
     resolver: Resolver,
+    options: ModelOptions,
 }
 
 impl Assets for Files {
@@ -92,8 +95,14 @@ impl Assets for Files {
         self.resolver.resolve(from, reference)
     }
 
-    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<scene_file::Model, LoadError> {
-        let mut model = model::load(path, &self.resolver)?;
+    fn model(
+        &mut self,
+        scene: &mut Scene,
+        path: &Path,
+        options: &ModelOptions,
+    ) -> Result<scene_file::Model, LoadError> {
+        let options = ModelOptions { crease: options.crease.or(self.options.crease) };
+        let mut model = model::load(path, &self.resolver, &options)?;
         let warnings = std::mem::take(&mut model.warnings);
         let node = model.insert_into(scene);
         Ok(scene_file::Model { root: scene.insert(node), warnings })

@@ -5,8 +5,10 @@
 //! here, a variant of [`ModelFormat`] and a line in `read`.
 
 mod mtl;
+mod normals;
 mod obj;
 mod off;
+mod options;
 mod ply;
 mod polygons;
 mod report;
@@ -15,6 +17,7 @@ mod text;
 mod tree;
 mod triangulate;
 
+pub use options::{Crease, ModelOptions};
 pub use ply::write_ply;
 pub use tree::{ModelNode, ModelTree};
 
@@ -184,9 +187,9 @@ impl Model {
 ///
 /// # Errors
 /// The format is unknown, the file cannot be read or is at fault, or it holds nothing to draw.
-pub fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+pub fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     match ModelFormat::of_path(path) {
-        Some(format) => read(format, path, resolver),
+        Some(format) => read(format, path, resolver, options),
         None => {
             let formats = model_extensions().map(|extension| format!(".{extension}")).collect::<Vec<_>>();
             let message = "is not a model of a format that is read";
@@ -196,12 +199,17 @@ pub fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
     }
 }
 
-fn read(format: ModelFormat, path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+fn read(
+    format: ModelFormat,
+    path: &Path,
+    resolver: &Resolver,
+    options: &ModelOptions,
+) -> Result<Model, LoadError> {
     match format {
-        ModelFormat::Obj => obj::load(path, resolver),
-        ModelFormat::Ply => ply::load(path, resolver),
-        ModelFormat::Stl => stl::load(path, resolver),
-        ModelFormat::Off => off::load(path, resolver),
+        ModelFormat::Obj => obj::load(path, resolver, options),
+        ModelFormat::Ply => ply::load(path, resolver, options),
+        ModelFormat::Stl => stl::load(path, resolver, options),
+        ModelFormat::Off => off::load(path, resolver, options),
     }
 }
 

@@ -10,23 +10,26 @@
 use super::polygons::{Corner, NONE, Polygons};
 use super::report::Report;
 use super::text::{Cursor, Source, Word, decode};
-use super::{Model, ModelPart, name_of};
+use super::{Model, ModelOptions, ModelPart, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
+use lancer_core::color::srgb_to_linear;
 use lancer_core::geometry::DVec3;
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Reads the OFF file at `path`.
-pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     let bytes = resolver.read(path)?;
     let source = Source { path, bytes: &bytes };
     let mut parser = Parser::new(source, resolver.limits);
     let header = parser.header()?;
     parser.vertices(&header)?;
     parser.faces(&header)?;
-    let (polygons, warnings) = parser.finish()?;
+    let (mut polygons, warnings) = parser.finish()?;
+    polygons.smooth(options.crease);
     let meshes = polygons.into_meshes().map_err(|error| LoadError::new(path, error.to_string()))?;
     let part = |(_, mesh)| ModelPart { name: name_of(path), mesh: Arc::new(mesh), material: None };
     Ok(Model {
@@ -49,12 +52,21 @@ struct Header<'a> {
     counts: Word<'a>,
 }
 
+/// The colour of what has none. No number, since what white is written as depends on the file.
+const WHITE: [f64; 3] = [f64::INFINITY; 3];
+
 struct Parser<'a> {
     source: Source<'a>,
     limits: Limits,
     cursor: Cursor<'a>,
     report: Report,
     polygons: Polygons,
+    /// For each position its colour as written; white where there is none.
+    colors: Vec<[f64; 3]>,
+    /// Whether any colour is written.
+    has_colors: bool,
+    /// The positions of corners whose colour is that of their face, by vertex and by the colour's bits.
+    position_of: HashMap<(u32, [u64; 3]), u32>,
     /// Faces of fewer than three corners: the first, and how many.
     small: Option<(Word<'a>, usize)>,
 }
@@ -69,6 +81,9 @@ impl<'a> Parser<'a> {
             cursor: Cursor::new(source.bytes, start),
             report: Report::new(limits.errors),
             polygons: Polygons::default(),
+            colors: Vec::new(),
+            has_colors: false,
+            position_of: HashMap::new(),
             small: None,
         }
     }
@@ -140,33 +155,36 @@ impl<'a> Parser<'a> {
                 let normal = DVec3::from_array(self.numbers::<3>(first)?).normalize_or_zero();
                 self.polygons.normals.push(normal.to_array().map(|x| x as f32));
             }
-            if header.colors || header.uvs {
-                self.colors_and_uv(header, first)?;
+            let color = if header.colors { self.vertex_color(header, first)? } else { WHITE };
+            self.colors.push(color);
+            if header.uvs {
+                let uv = self.numbers::<2>(first)?;
+                self.polygons.uvs.push(uv.map(|x| x as f32));
             }
             self.cursor.skip_line();
         }
         Ok(())
     }
 
-    /// The rest of a vertex's line: three or four numbers of a colour, then two of texture coordinates.
-    fn colors_and_uv(&mut self, header: &Header, vertex: Word<'a>) -> Result<(), LoadError> {
+    /// Three numbers of a colour, and a fourth that is passed over, before those of texture coordinates.
+    fn vertex_color(&mut self, header: &Header, vertex: Word<'a>) -> Result<[f64; 3], LoadError> {
         let uv_words = if header.uvs { 2 } else { 0 };
-        if header.colors {
-            let mut ahead = self.cursor.clone();
-            let words = std::iter::from_fn(|| ahead.word()).take(6).count();
-            let components = words.saturating_sub(uv_words).min(4);
-            if components < 3 {
-                return Err(self.fault(vertex, "this vertex lacks a colour of three or four numbers"));
-            }
-            for _ in 0..components {
-                self.number(vertex)?;
-            }
+        let components = self.words_left().saturating_sub(uv_words).min(4);
+        if components < 3 {
+            return Err(self.fault(vertex, "this vertex lacks a colour of three or four numbers"));
         }
-        if header.uvs {
-            let uv = self.numbers::<2>(vertex)?;
-            self.polygons.uvs.push(uv.map(|x| x as f32));
+        let color = self.numbers::<3>(vertex)?;
+        if components == 4 {
+            self.number(vertex)?;
         }
-        Ok(())
+        self.has_colors = true;
+        Ok(color)
+    }
+
+    /// How many words the line still has, up to six.
+    fn words_left(&self) -> usize {
+        let mut ahead = self.cursor.clone();
+        std::iter::from_fn(|| ahead.word()).take(6).count()
     }
 
     fn numbers<const N: usize>(&mut self, element: Word<'a>) -> Result<[f64; N], LoadError> {
@@ -231,8 +249,32 @@ impl<'a> Parser<'a> {
                 normal: used(header.normals),
             });
         }
+        // One number is an entry of a colour map, which the file does not hold.
+        if matches!(self.words_left(), 3 | 4) {
+            match self.numbers::<3>(count) {
+                Ok(color) => self.color_corners(first, color),
+                Err(error) => {
+                    self.polygons.corners.truncate(first);
+                    return error.diagnostics.into_iter().for_each(|told| self.report.error(|| told));
+                }
+            }
+        }
         if !self.polygons.end_face(first, 0) {
             self.small = Some(self.small.map_or((count, 1), |(first, count)| (first, count + 1)));
+        }
+    }
+
+    /// Gives the corners from `first` on positions of a colour.
+    fn color_corners(&mut self, first: usize, color: [f64; 3]) {
+        self.has_colors = true;
+        let positions = &mut self.polygons.positions;
+        for corner in &mut self.polygons.corners[first..] {
+            let key = (corner.position, color.map(f64::to_bits));
+            corner.position = *self.position_of.entry(key).or_insert_with(|| {
+                positions.push(positions[corner.position as usize]);
+                self.colors.push(color);
+                positions.len() as u32 - 1
+            });
         }
     }
 
@@ -244,6 +286,14 @@ impl<'a> Parser<'a> {
         }
         if self.report.is_clean() && self.polygons.triangles() == 0 {
             self.report.error(|| Diagnostic::new(self.source.path, "holds no face to draw"));
+        }
+        if self.has_colors {
+            let written = self.colors.iter().filter(|color| **color != WHITE).flatten();
+            let largest = written.copied().fold(0.0, f64::max);
+            let white = if largest > 1.0 { 255.0 } else { 1.0 };
+            let channel = |x: f64| srgb_to_linear((x / white).clamp(0.0, 1.0)) as f32;
+            let decoded = |color: &[f64; 3]| if *color == WHITE { [1.0; 3] } else { color.map(channel) };
+            self.polygons.colors = self.colors.iter().map(decoded).collect();
         }
         let warnings = self.report.finish(self.source.path)?;
         Ok((self.polygons, warnings))

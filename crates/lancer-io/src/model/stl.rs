@@ -2,7 +2,7 @@
 //!
 //! In: the bytes of a file, in text or in binary. Which of the two is told by the size that a binary file has
 //! for its count of triangles, not by the word `solid`, with which many a binary header begins too. Out: one
-//! mesh of flat facets for each solid, its equal vertices joined. Normals are passed over, since they say no
+//! mesh for each solid, its equal vertices joined, of flat facets unless a crease angle is asked for. Normals are passed over, since they say no
 //! more than the order of the vertices, and so are the colours that some programs put into binary files.
 //!
 //! Source: 3D Systems, "Stereolithography interface specification", 1988.
@@ -10,7 +10,7 @@
 use super::polygons::{Corner, NONE, Polygons};
 use super::report::Report;
 use super::text::{Cursor, Source, Word, decode};
-use super::{Model, ModelPart, UpAxis, name_of};
+use super::{Model, ModelOptions, ModelPart, UpAxis, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
@@ -26,15 +26,19 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 /// Reads the STL file at `path`.
-pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     let bytes = resolver.read(path)?;
     let source = Source { path, bytes: &bytes };
-    let solids = match encoding_of(source)? {
+    let mut solids = match encoding_of(source)? {
         Encoding::Text => TextParser::new(source, resolver.limits).parse()?,
         Encoding::Binary { triangles } => read_binary(source, triangles, &resolver.limits)?,
     };
     if solids.polygons.triangles() == 0 {
         return Err(LoadError::new(path, "holds no triangle to draw"));
+    }
+    // Most files are of parts with sharp edges, and none says which are meant to be round.
+    if options.crease.is_some() {
+        solids.polygons.smooth(options.crease);
     }
     let meshes = solids.polygons.into_meshes().map_err(|error| LoadError::new(path, error.to_string()))?;
     let part = |(solid, mesh): (u32, _)| {

@@ -2,7 +2,7 @@
 
 use lancer_io::diagnostics::LoadError;
 use lancer_io::limits::Limits;
-use lancer_io::model::{self, Model};
+use lancer_io::model::{self, Crease, Model, ModelOptions};
 use lancer_io::resolver::Resolver;
 use proptest::prelude::*;
 use std::fmt::Display;
@@ -35,9 +35,15 @@ impl Files {
         self.load_within(name, Limits::default())
     }
 
+    pub(crate) fn load_smoothed(&self, name: &str, degrees: f64) -> Result<Model, LoadError> {
+        let path = self.path(name);
+        let options = ModelOptions { crease: Crease::from_degrees(degrees) };
+        model::load(&path, &Resolver::for_file(&path, false, Limits::default()), &options)
+    }
+
     pub(crate) fn load_within(&self, name: &str, limits: Limits) -> Result<Model, LoadError> {
         let path = self.path(name);
-        model::load(&path, &Resolver::for_file(&path, false, limits))
+        model::load(&path, &Resolver::for_file(&path, false, limits), &ModelOptions::default())
     }
 }
 

@@ -34,9 +34,24 @@ fn prefixes_say_what_vertices_have() {
             [vertex(0, 0, &rest(0.0, 0.25)), vertex(1, 0, &rest(1.0, 0.25)), vertex(0, 1, &rest(0.0, 0.75))];
         let model = load("a.off", format!("{prefix}OFF 3 1 3\n{}3 0 1 2\n", vertices.concat())).unwrap();
         let data = model.parts[0].mesh.data();
+        assert_eq!(data.colors, if colors.is_empty() { vec![] } else { vec![[1.0, 0.0, 0.0]; 3] });
         assert_eq!(data.normals, [[0.0, 0.0, 1.0]; 3]);
         assert_eq!(data.uvs, [[0.0, 0.25], [1.0, 0.25], [0.0, 0.75]]);
     }
+}
+
+#[test]
+fn colors_of_faces_win_over_those_of_vertices_and_their_corners_are_split() {
+    let vertex = |x, y| format!("{x} {y} 0 0 0 255\n");
+    let vertices = [vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)].concat();
+    let model =
+        load("a.off", format!("COFF 4 3 0\n{vertices}3 0 1 2 255 0 0\n3 0 2 3 188 188 188 9\n3 0 1 3 5\n"));
+    let model = model.unwrap();
+    let data = model.parts[0].mesh.data();
+    let color_of = |triangle: usize| data.indices[triangle].map(|index| data.colors[index as usize]);
+    assert_eq!(color_of(0), [[1.0, 0.0, 0.0]; 3]);
+    assert!(color_of(1).as_flattened().iter().all(|x| (x - 0.5029).abs() < 1e-4), "188 is half of white");
+    assert_eq!(color_of(2), [[0.0, 0.0, 1.0]; 3]);
 }
 
 #[test]

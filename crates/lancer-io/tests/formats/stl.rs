@@ -59,6 +59,14 @@ fn text_and_binary_give_one_mesh() {
 }
 
 #[test]
+fn edges_are_smooth_up_to_a_crease_angle_on_request() {
+    let files = Files::new().with("a.stl", binary(b"", &TETRAHEDRON, 4));
+    let vertices = |degrees| files.load_smoothed("a.stl", degrees).unwrap().parts[0].mesh.data().clone();
+    assert_eq!(vertices(180.0).normals.len(), 4);
+    assert_eq!(vertices(0.0).normals.len(), 0);
+}
+
+#[test]
 fn each_solid_is_a_part_and_empty_ones_are_none() {
     let both = format!("{}solid\nendsolid\n{}", text(&TETRAHEDRON[..1]), text(&TETRAHEDRON[1..]));
     let model = load("a.stl", both).unwrap();
