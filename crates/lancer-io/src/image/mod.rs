@@ -6,3 +6,4 @@ mod decode;
 pub mod encode;
 
 pub use decode::load_texture;
+pub(crate) use decode::texture_of_bytes;

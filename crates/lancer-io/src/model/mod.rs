@@ -4,6 +4,7 @@
 //! material, how they are arranged, and what the user should know about the file. A further format is a module
 //! here, a variant of [`ModelFormat`] and a line in `read`.
 
+mod gltf;
 mod mtl;
 mod normals;
 mod obj;
@@ -41,11 +42,13 @@ pub enum ModelFormat {
     Stl,
     /// Geomview's object file format, in text.
     Off,
+    /// glTF 2.0, with its buffers and images in files of their own or within, and its binary form GLB.
+    Gltf,
 }
 
 impl ModelFormat {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Ply, Self::Stl, Self::Off];
+    pub const ALL: [Self; 5] = [Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf];
 
     /// The extensions of the format's files, in lower case.
     pub const fn extensions(self) -> &'static [&'static str] {
@@ -54,6 +57,7 @@ impl ModelFormat {
             Self::Ply => &["ply"],
             Self::Stl => &["stl"],
             Self::Off => &["off"],
+            Self::Gltf => &["gltf", "glb"],
         }
     }
 
@@ -210,6 +214,7 @@ fn read(
         ModelFormat::Ply => ply::load(path, resolver, options),
         ModelFormat::Stl => stl::load(path, resolver, options),
         ModelFormat::Off => off::load(path, resolver, options),
+        ModelFormat::Gltf => gltf::load(path, resolver, options),
     }
 }
 
