@@ -110,6 +110,7 @@ pub fn scene_of_model(mut model: Model) -> Scene {
         let ground = Node::shape("ground", Shape::Plane).with_material(ground);
         scene.add(ground.with_transform(Transform::translate(at)));
     }
+    paint(&mut model);
     let model = model.insert_into(&mut scene).with_material(plaster);
     let place = model.transform.then(upright);
     scene.add(model.with_transform(place));
@@ -157,6 +158,17 @@ fn plaster() -> Material {
         specular: Rgb::grey(0.006),
         shininess: 40.0,
         ..Material::named("plaster")
+    }
+}
+
+/// Gives parts that have colours of their own and no material a white plaster: the warm one would tint them.
+fn paint(model: &mut Model) {
+    let white = model.materials.len();
+    let parts = model.parts.iter_mut().filter(|part| part.material.is_none());
+    let painted = parts.filter(|part| !part.mesh.data().colors.is_empty());
+    if painted.map(|part| part.material = Some(white)).count() > 0 {
+        let name = "painted plaster".to_owned();
+        model.materials.push(Material { name, color: Rgb::WHITE.into(), ..plaster() });
     }
 }
 

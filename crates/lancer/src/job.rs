@@ -162,6 +162,7 @@ fn load_options(reading: ReadingArgs) -> LoadOptions {
         limits: Limits::default(),
         allow_outside: reading.access.allow_outside,
         overrides: reading.overrides,
+        ..LoadOptions::default()
     }
 }
 

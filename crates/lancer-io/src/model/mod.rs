@@ -4,6 +4,7 @@
 //! material, how they are arranged, and what the user should know about the file. A further format is a module
 //! here, a variant of [`ModelFormat`] and a line in `read`.
 
+mod archive;
 mod gltf;
 mod mtl;
 mod normals;
@@ -15,6 +16,7 @@ mod polygons;
 mod report;
 mod stl;
 mod text;
+mod three_mf;
 mod tree;
 mod triangulate;
 
@@ -44,11 +46,13 @@ pub enum ModelFormat {
     Off,
     /// glTF 2.0, with its buffers and images in files of their own or within, and its binary form GLB.
     Gltf,
+    /// The 3D Manufacturing Format of printers.
+    ThreeMf,
 }
 
 impl ModelFormat {
     /// Every format.
-    pub const ALL: [Self; 5] = [Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf];
+    pub const ALL: [Self; 6] = [Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf, Self::ThreeMf];
 
     /// The extensions of the format's files, in lower case.
     pub const fn extensions(self) -> &'static [&'static str] {
@@ -58,6 +62,7 @@ impl ModelFormat {
             Self::Stl => &["stl"],
             Self::Off => &["off"],
             Self::Gltf => &["gltf", "glb"],
+            Self::ThreeMf => &["3mf"],
         }
     }
 
@@ -70,14 +75,16 @@ impl ModelFormat {
     }
 }
 
-/// The extensions of all files that are read as models.
+/// The extensions of all files that are read as models, packed ones among them.
 pub fn model_extensions() -> impl Iterator<Item = &'static str> {
-    ModelFormat::ALL.into_iter().flat_map(|format| format.extensions().iter().copied())
+    let formats = ModelFormat::ALL.into_iter().flat_map(|format| format.extensions().iter().copied());
+    formats.chain(archive::EXTENSIONS)
 }
 
 /// Whether a file is read as a model, by its name.
 pub fn is_model_file(path: &Path) -> bool {
-    ModelFormat::of_path(path).is_some()
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|found| model_extensions().any(|known| found.eq_ignore_ascii_case(known)))
 }
 
 /// The triangles of one file that share a material.
@@ -185,7 +192,7 @@ impl Model {
     }
 }
 
-/// Reads a model file of any format in [`ModelFormat`], chosen by its extension.
+/// Reads a model file of any format in [`ModelFormat`], chosen by its extension, or the model in a `.gz` or `.zip` file.
 ///
 /// What the file refers to and cannot be had (a material, a texture) is a warning.
 ///
@@ -194,6 +201,7 @@ impl Model {
 pub fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     match ModelFormat::of_path(path) {
         Some(format) => read(format, path, resolver, options),
+        None if archive::is_packed(path) => archive::load(path, resolver, options),
         None => {
             let formats = model_extensions().map(|extension| format!(".{extension}")).collect::<Vec<_>>();
             let message = "is not a model of a format that is read";
@@ -215,6 +223,7 @@ fn read(
         ModelFormat::Stl => stl::load(path, resolver, options),
         ModelFormat::Off => off::load(path, resolver, options),
         ModelFormat::Gltf => gltf::load(path, resolver, options),
+        ModelFormat::ThreeMf => three_mf::load(path, resolver, options),
     }
 }
 

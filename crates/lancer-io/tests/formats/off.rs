@@ -1,7 +1,10 @@
 //! OFF.
 
 use crate::common::{Files, area, error_of, load, mutated, mutations, warnings_of};
+use lancer_core::Rgb;
+use lancer_core::scene::Texture;
 use lancer_io::limits::Limits;
+use lancer_io::showcase::scene_of_model;
 use proptest::prelude::*;
 
 const SQUARE: &str = "OFF\n# a square\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
@@ -52,6 +55,9 @@ fn colors_of_faces_win_over_those_of_vertices_and_their_corners_are_split() {
     assert_eq!(color_of(0), [[1.0, 0.0, 0.0]; 3]);
     assert!(color_of(1).as_flattened().iter().all(|x| (x - 0.5029).abs() < 1e-4), "188 is half of white");
     assert_eq!(color_of(2), [[0.0, 0.0, 1.0]; 3]);
+    let scene = scene_of_model(model);
+    let painted = scene.materials().iter().find(|material| material.name == "painted plaster").unwrap();
+    assert_eq!(painted.color, Texture::Solid(Rgb::WHITE), "nothing tints the file's own colours");
 }
 
 #[test]

@@ -52,10 +52,11 @@ pub(super) struct Warnings {
 impl Warnings {
     pub(super) fn add(&mut self, pointer: impl Display, message: impl Into<String>) {
         let message = message.into();
-        match self.told.iter_mut().find(|(_, other, _)| *other == message) {
-            Some((_, _, count)) => *count += 1,
-            None if self.told.len() < MOST_KINDS => self.told.push((pointer.to_string(), message, 1)),
-            None => {}
+        let known = self.told.iter().position(|(_, other, _)| *other == message);
+        if let Some(known) = known {
+            self.told[known].2 += 1;
+        } else if self.told.len() < MOST_KINDS {
+            self.told.push((pointer.to_string(), message, 1));
         }
     }
 

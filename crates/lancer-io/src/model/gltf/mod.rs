@@ -193,12 +193,11 @@ fn model_nodes(
             children: written.children.to_vec(),
         };
         if let Some(mesh) = written.mesh {
-            let drawn = parts.of_mesh(mesh, &format!("/nodes/{index}/mesh"), warnings)?;
             if node.name.is_empty() {
                 node.name = parts.mesh_name(mesh);
             }
-            match drawn {
-                [] | [_] => node.parts = drawn.to_vec(),
+            match parts.of_mesh(mesh, &format!("/nodes/{index}/mesh"), warnings)? {
+                few @ ([] | [_]) => node.parts = few.to_vec(),
                 several => {
                     let shared = *node_of_mesh.entry(mesh).or_insert_with(|| {
                         let (name, parts) = (String::new(), several.to_vec());

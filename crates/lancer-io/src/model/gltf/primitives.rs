@@ -105,8 +105,9 @@ impl<'a> MeshMaker<'a> {
     fn data(&mut self, recipe: &Recipe, at: &str, warnings: &mut Warnings) -> Result<Option<MeshData>> {
         let positions = self.attribute(recipe.position, at, "POSITION", &[3], None)?;
         let count = positions.count();
-        let attribute =
-            |index, name, components: &[usize]| self.attribute(index, at, name, components, Some(count));
+        let attribute = |index, name: &str, components: &[usize]| {
+            self.attribute(index, at, name, components, Some(count))
+        };
         let normals = recipe.normal.map(|index| attribute(index, "NORMAL", &[3])).transpose()?;
         let colors = recipe.color.map(|index| attribute(index, "COLOR_0", &[3, 4])).transpose()?;
         let uvs = recipe.uv.as_ref().map(|(index, mapping)| {
