@@ -96,7 +96,7 @@ impl NarrowRay {
         let narrow = narrowed(origin);
         let rest = narrowed(origin - widened(narrow));
         let inverse = narrowed(safe_inverse(direction));
-        // A slab test computes b * inverse + offset. The sum of its errors, derived in docs/kernels.md, is
+        // A slab test computes b * inverse + offset. The sum of its errors, derived in docs/how-it-works/kernels.md, is
         // below 12 units of roundoff of |b| + |origin|, each at most `size`.
         let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
         let direction = narrowed(direction);
