@@ -43,12 +43,13 @@ pub(crate) fn measure(output: &Path, data: Option<&Path>) -> Result<(), Failure>
         lattice.points.push((f64::from(n), by_lattice));
         independent.points.push((f64::from(n), by_chance));
     }
+    let exponents = [&lattice, &independent].map(|curve| growth(&curve.points));
+    println!("error ~ N^e: {:.2} and {:.2}", exponents[0], exponents[1]);
     if let Some(path) = data {
         let rows = lattice.points.iter().zip(&independent.points).map(|(&(n, by_lattice), &(_, by_chance))| {
             json!({ "samples": n, "lattice": by_lattice, "independent": by_chance })
         });
         let rows: Vec<_> = rows.collect();
-        let exponents = [&lattice, &independent].map(|curve| growth(&curve.points));
         write(path, json!({ "command": command_line(), "rows": rows, "exponents": exponents }))?;
     }
     let labels = Labels {
