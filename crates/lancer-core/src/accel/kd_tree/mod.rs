@@ -87,7 +87,7 @@ impl KdTree {
         build::build(primitives, settings, cancel)
     }
 
-    /// The box around all primitives.
+    /// The box around all primitives, rounded outward to `f32`; a point at the origin where there are none.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -107,7 +107,7 @@ impl KdTree {
         self.references.len()
     }
 
-    /// Bytes held.
+    /// Bytes held by nodes and references, without the primitives themselves.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.references[..])
     }
