@@ -16,6 +16,7 @@ mod tests;
 mod traverse;
 mod validate;
 
+pub use split::{STEP_COST, TEST_COST};
 pub use validate::{Defect, NodeKind, NodeVisit};
 
 use super::{Aabb, Primitives};
