@@ -3,12 +3,14 @@
 //! It knows neither traversal nor threads. [`load`] reads whatever a user names; the modules read and write one
 //! kind of file each.
 
+pub mod compare;
 pub mod diagnostics;
 pub mod image;
 pub mod limits;
 mod load;
 pub mod model;
 pub mod output;
+pub mod provenance;
 pub mod resolver;
 pub mod scene_file;
 pub mod showcase;

@@ -181,7 +181,7 @@ impl App {
         self.preferences.spoken_language()
     }
 
-    /// The exposure of the scene.
+    /// How the scene is shown.
     fn tone(&self) -> Tone {
         self.document.as_ref().map_or_else(Tone::default, |document| document.scene().tone)
     }

@@ -14,7 +14,7 @@ use crate::picture::color_image;
 use crate::preferences::Theme;
 use crate::worker::{Channel, RenderRequest};
 use eframe::egui::{Context, ViewportCommand};
-use lancer_core::film::Image;
+use lancer_core::film::{Image, Tone};
 use lancer_core::geometry::{Bounds, DVec2};
 use lancer_core::scene::{NodeId, Scene};
 use lancer_core::world::{ObjectId, World};
@@ -300,20 +300,20 @@ impl App {
         }
     }
 
-    /// The picture that is shown, as it is saved; none while there is none, or it is not yet refined.
-    fn picture(&self) -> Option<Image> {
+    /// The picture that is shown, and how it is shown and saved; none while there is none, or it is not yet refined.
+    fn picture(&self) -> Option<(&Image, Tone)> {
         if self.shelf.showing == Showing::Live {
             let frame = self.live.frame().filter(|_| self.live.is_final())?;
-            Some(self.live.tone_of(self.tone()).expose(&frame.image))
+            Some((&frame.image, self.live.tone_of(self.tone())))
         } else {
-            self.shelf.shown().map(super::shelf::Kept::shown_image)
+            self.shelf.shown().map(super::shelf::Kept::picture)
         }
     }
 
     fn copy_picture(&mut self, ctx: &Context) {
         match self.picture() {
-            Some(image) => {
-                ctx.copy_image(color_image(&image));
+            Some((image, tone)) => {
+                ctx.copy_image(color_image(image, tone));
                 self.messages.info(self.language().say(COPIED));
             }
             None => self.copy_when_final = true,
@@ -344,9 +344,9 @@ impl App {
     fn save_picture_to(&mut self, ctx: &Context, path: &Path) {
         let language = self.language();
         match self.picture() {
-            Some(image) => {
-                let path = path.to_owned();
-                self.saver.start(waker(ctx), move || save_picture(&path, &image, language));
+            Some((image, tone)) => {
+                let (path, image) = (path.to_owned(), image.clone());
+                self.saver.start(waker(ctx), move || save_picture(&path, &image, tone, language));
             }
             None => {
                 self.save_when_final = Some(path.to_owned());

@@ -2,10 +2,10 @@
 
 use crate::language::{Language, Phrase};
 use lancer_core::camera::Camera;
-use lancer_core::film::Image;
+use lancer_core::film::{Image, Tone};
 use lancer_core::scene::Scene;
 use lancer_io::LoadOptions;
-use lancer_io::image::encode::{self, ImageFormat, Metadata};
+use lancer_io::image::{ImageFormat, Metadata, encode};
 use lancer_io::output::write_atomically;
 use lancer_io::scene_file;
 use std::path::{Path, PathBuf};
@@ -86,11 +86,11 @@ impl Saver {
     }
 }
 
-/// Writes a picture as its name says, the bytes that `lancer render` writes.
-pub(crate) fn save_picture(path: &Path, image: &Image, language: Language) -> Saved {
+/// Writes a picture as its name says: the pixels that `lancer render` writes.
+pub(crate) fn save_picture(path: &Path, image: &Image, tone: Tone, language: Language) -> Saved {
     let write = || -> Result<(), String> {
         let format = ImageFormat::from_path(path).map_err(|error| error.to_string())?;
-        write_atomically(path, |out| encode::write(format, image, &Metadata::default(), out))
+        write_atomically(path, |out| encode::write(format, image, tone, &Metadata::default(), out))
             .map_err(|error| error.to_string())
     };
     match write() {

@@ -24,9 +24,9 @@ impl Kept {
         &self.texture
     }
 
-    /// The image as it is shown and saved, still linear.
-    pub(crate) fn shown_image(&self) -> Image {
-        self.tone.expose(&self.rendered.image)
+    /// The image, and how it is shown and saved.
+    pub(crate) fn picture(&self) -> (&Image, Tone) {
+        (&self.rendered.image, self.tone)
     }
 }
 
