@@ -85,8 +85,11 @@ fn title(selection: Selection, scene: &Scene, language: Language) -> String {
         Selection::Light(_) => Phrase::new("Light", "Lumière"),
         Selection::Material(_) => Phrase::new("Material", "Matériau"),
     };
-    let separator = language.say(Phrase::new(": ", " : "));
-    format!("{}{separator}{}", language.say(kind), scene_tree::name_of(selection, scene, language))
+    let (kind, name) = (language.say(kind), scene_tree::name_of(selection, scene, language));
+    if name.is_empty() {
+        return kind.to_owned();
+    }
+    format!("{kind}{}{name}", language.say(Phrase::new(": ", " : ")))
 }
 
 fn heading(ui: &mut Ui, text: &str) {
