@@ -27,7 +27,7 @@ use std::io::{self, Write};
 /// Writes an image.
 ///
 /// # Errors
-/// The image has no pixel, or more than the format can hold; or `out` fails.
+/// The image has no pixel, or more than the format can hold; the metadata are not what they must be; or `out` fails.
 pub fn write(
     encoding: impl Into<Encoding>,
     image: &Image,
@@ -40,6 +40,9 @@ pub fn write(
         return Err(invalid("an image without pixels"));
     }
     encoding.check_size(image.width(), image.height()).map_err(invalid)?;
+    if !metadata.provenance.iter().all(|text| text.bytes().all(|byte| matches!(byte, b' '..=b'~'))) {
+        return Err(invalid("what is said of how the picture was made is not one line of ASCII"));
+    }
     match encoding.format() {
         ImageFormat::Png => png::write(encoding.bits(), image, tone, metadata, out),
         ImageFormat::Jpeg => jpeg::write(encoding, image, tone, metadata, out),
