@@ -5,7 +5,7 @@ use lancer_core::Rgb;
 use lancer_core::film::{Image, Tone, to_srgb8};
 use lancer_core::geometry::DVec2;
 use lancer_io::image::encode::{write, write_png};
-use lancer_io::image::{ImageFormat, Metadata, load_texture};
+use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, load_texture};
 use lancer_io::limits::Limits;
 use lancer_io::output::write_atomically;
 use lancer_io::resolver::Resolver;
@@ -89,6 +89,29 @@ fn tga_is_known_by_its_name_and_others_by_their_content() {
     assert_eq!(load(directory.path(), "t.TGA", &tga), Ok((1, 1, Rgb::new(1.0, 0.0, 0.0))));
     let white = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, None, &[255]);
     assert_eq!(load(directory.path(), "misnamed.jpg", &white), Ok((1, 1, Rgb::WHITE)));
+}
+
+#[test]
+fn webp_and_tiff_are_textures_and_floats_are_none() {
+    let directory = TempDir::new().unwrap();
+    let image = Image::black(3, 2).map(|_| [1.0, 0.0, 0.0]);
+    let written = |encoding: Encoding| {
+        let mut bytes = Vec::new();
+        write(encoding, &image, Tone::default(), &Metadata::default(), &mut bytes).unwrap();
+        bytes
+    };
+    let tiff = |bits| {
+        let choice = EncodingChoice { bits: Some(bits), ..EncodingChoice::default() };
+        written(Encoding::new(ImageFormat::Tiff, choice).unwrap())
+    };
+    for bytes in [written(ImageFormat::WebP.into()), tiff(8), tiff(16)] {
+        assert_eq!(load(directory.path(), "t", &bytes), Ok((3, 2, Rgb::new(1.0, 0.0, 0.0))));
+    }
+    let error = load(directory.path(), "t.tif", &tiff(32)).unwrap_err();
+    assert!(error.contains("t.tif: ") && error.contains("8 or 16 bits"), "{error}");
+    for radiance in [ImageFormat::Hdr, ImageFormat::Exr, ImageFormat::Pfm] {
+        assert!(load(directory.path(), "t", &written(radiance.into())).is_err(), "{radiance:?}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use crate::resolver::Resolver;
 use ::image::codecs::jpeg::JpegDecoder;
 use ::image::codecs::webp::WebPDecoder;
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
-use lancer_core::color::{linear_to_srgb, srgb_to_linear};
+use lancer_core::color::linear_to_srgb;
 use lancer_core::film::Image;
 use std::io::Cursor;
 use std::path::Path;
@@ -40,14 +40,6 @@ impl Picture {
         match self.is_linear {
             true => self.values.map(|pixel| pixel.map(|value| linear_to_srgb(unit(value)) as f32)),
             false => self.values.clone(),
-        }
-    }
-
-    /// The values as radiance.
-    pub fn to_linear(&self) -> Image {
-        match self.is_linear {
-            true => self.values.clone(),
-            false => self.values.map(|pixel| pixel.map(|value| srgb_to_linear(f64::from(value)) as f32)),
         }
     }
 }
