@@ -111,7 +111,7 @@ impl Job {
     /// What the file says of the picture beside its pixels.
     pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
         let (set, unrecorded) = record_overrides(&self.load.overrides);
-        let provenance = Provenance {
+        let record = Provenance {
             lancer: Provenance::VERSION.to_owned(),
             scene: self.source.record(),
             name: scene.name.clone(),
@@ -125,12 +125,7 @@ impl Job {
             encoding: self.destination.encoding(),
             dpi: self.dpi,
         };
-        Metadata {
-            title: scene.name.clone(),
-            provenance: Some(provenance.to_text()),
-            dpi: self.dpi,
-            ..Metadata::default()
-        }
+        record.metadata()
     }
 
     fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Camera, Error> {

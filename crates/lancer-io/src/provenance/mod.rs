@@ -12,7 +12,7 @@ mod hash;
 
 pub use hash::SceneHash;
 
-use crate::image::{Compression, Encoding, EncodingChoice, ImageFormat};
+use crate::image::{Compression, Encoding, EncodingChoice, ImageFormat, Metadata};
 use crate::scene_file::Override;
 use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::scene::{AmbientOcclusion, Settings};
@@ -79,6 +79,16 @@ impl Provenance {
         let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, Ascii);
         self.serialize(&mut serializer).expect("a record has only text for keys, and memory can be written");
         bytes.into_iter().map(char::from).collect()
+    }
+
+    /// What a file says beside its pixels, of which this record is the larger part.
+    pub fn metadata(&self) -> Metadata {
+        Metadata {
+            software: format!("Lancer {}", self.lancer),
+            title: self.name.clone(),
+            provenance: Some(self.to_text()),
+            dpi: self.dpi,
+        }
     }
 
     /// The record of a text.

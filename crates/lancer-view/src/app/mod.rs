@@ -9,6 +9,7 @@ mod events;
 mod files;
 mod layout;
 mod live;
+mod making;
 mod perform;
 mod saving;
 mod shelf;

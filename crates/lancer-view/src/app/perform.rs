@@ -1,5 +1,6 @@
 //! What the user wants, carried out.
 
+use super::making::Making;
 use super::saving::{save_into_scene_file, save_picture, save_scene_as};
 use super::shelf::Showing;
 use super::{Action, App, Asking, Selection};
@@ -277,7 +278,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let scene = Arc::clone(document.scene());
         let (settings, tone) = (scene.settings, scene.tone);
-        let title = document.source().stem();
+        let source = document.source().clone();
         let request = RenderRequest {
             revision: document.revision(),
             options: self.options,
@@ -288,7 +289,7 @@ impl App {
             scene,
         };
         let id = self.worker.render(request);
-        self.shelf.begin(id, &title, (settings.width, settings.height), tone);
+        self.shelf.begin(id, &source, (settings.width, settings.height), tone);
     }
 
     /// Ends what is under way: a render, or else the opening of a scene.
@@ -308,6 +309,12 @@ impl App {
         } else {
             self.shelf.shown().map(super::shelf::Kept::picture)
         }
+    }
+
+    /// How the picture that is shown was made; none for the live one, which has no settings of its own.
+    fn making(&self) -> Option<Making> {
+        let is_kept = self.shelf.showing != Showing::Live;
+        self.shelf.shown().filter(|_| is_kept).map(super::shelf::Kept::making)
     }
 
     fn copy_picture(&mut self, ctx: &Context) {
@@ -345,8 +352,9 @@ impl App {
         let language = self.language();
         match self.picture() {
             Some((image, tone)) => {
-                let (path, image) = (path.to_owned(), image.clone());
-                self.saver.start(waker(ctx), move || save_picture(&path, &image, tone, language));
+                let (path, image, making) = (path.to_owned(), image.clone(), self.making());
+                self.saver
+                    .start(waker(ctx), move || save_picture(&path, &image, tone, making.as_ref(), language));
             }
             None => {
                 self.save_when_final = Some(path.to_owned());

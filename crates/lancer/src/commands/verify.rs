@@ -14,13 +14,14 @@ use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::compare::{Comparison, PIXELS_PER_DEGREE};
 use lancer_io::diagnostics::{Diagnostic, LoadError};
-use lancer_io::image::{Metadata, decode_picture, encode, provenance_of};
+use lancer_io::image::{decode_picture, encode, provenance_of};
 use lancer_io::limits::Limits;
 use lancer_io::provenance::{Provenance, SceneHash, SceneSource};
 use lancer_io::resolver::Resolver;
 use lancer_io::scene_file::Override;
 use serde::Serialize;
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Renders the picture again and prints whether its bytes agree.
@@ -58,7 +59,9 @@ fn verify(args: VerifyArgs) -> Result<(), Error> {
     let world = progress
         .during("building", || World::compile(&scene, &compile_options(&work)))
         .map_err(|error| LoadError::from(source.diagnostic(error)))?;
-    let metadata = metadata_of(&record);
+    // As it was recorded, so that a file of another version, or of a scene that has changed unseen, still agrees where
+    // its pixels do.
+    let metadata = record.metadata();
     drop(scene);
 
     let tile_size = work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE);
@@ -73,7 +76,7 @@ fn verify(args: VerifyArgs) -> Result<(), Error> {
     if told.verdict == Verdict::Same { Ok(()) } else { Err(Error::Different) }
 }
 
-fn at_fault(image: &Path, message: impl ToString) -> Error {
+fn at_fault(image: &Path, message: impl fmt::Display) -> Error {
     Error::Scene(Diagnostic::new(image, message.to_string()).into())
 }
 
@@ -81,7 +84,7 @@ fn at_fault(image: &Path, message: impl ToString) -> Error {
 fn record_of(image: &Path, bytes: &[u8]) -> Result<Provenance, Error> {
     let Some(text) = provenance_of(bytes) else {
         let fault = Diagnostic::new(image, "does not say how it was made");
-        let hint = "only pictures that `lancer render` wrote do, in any format but PFM, unless a program has \
+        let hint = "what `lancer render` and the window's renders write does, in any format but PFM, unless a program has \
                     taken that out";
         return Err(Error::Scene(fault.with_hint(hint).into()));
     };
@@ -157,17 +160,6 @@ fn camera_of<'a>(image: &Path, record: &Provenance, scene: &'a Scene) -> Result<
             format!("was taken by a camera `{}`, which the scene has no more", name.unwrap_or_default()),
         )
     })
-}
-
-/// What the file says beside its pixels: as it was recorded, so that a file of another version, or of a scene that has
-/// changed unseen, still agrees where its pixels do.
-fn metadata_of(record: &Provenance) -> Metadata {
-    Metadata {
-        software: format!("Lancer {}", record.lancer),
-        title: record.name.clone(),
-        provenance: Some(record.to_text()),
-        dpi: record.dpi,
-    }
 }
 
 /// What came out.

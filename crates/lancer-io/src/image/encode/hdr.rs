@@ -102,9 +102,10 @@ fn put_stretch(values: &[u8], bytes: &mut Vec<u8>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lancer_core::geometry::portable;
 
     fn value([r, g, b, e]: [u8; 4]) -> [f64; 3] {
-        let unit = 2.0_f64.powi(i32::from(e) - 136);
+        let unit = portable::exp2(f64::from(e) - 136.0);
         [r, g, b].map(|mantissa| f64::from(mantissa) * unit)
     }
 
@@ -122,7 +123,7 @@ mod tests {
     #[test]
     fn powers_of_two_are_exact() {
         for exponent in -120..127 {
-            let power = 2.0_f32.powi(exponent);
+            let power = portable::exp2(f64::from(exponent)) as f32;
             assert_eq!(value(rgbe([power; 3])), [f64::from(power); 3], "2^{exponent}");
         }
     }
