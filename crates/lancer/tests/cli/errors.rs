@@ -39,7 +39,7 @@ fn wrong_flags_exit_with_2() {
         "--kd-depth 65",
         "--tile-size 0",
         "--set camera.fov",
-        "-o picture.jpg",
+        "-o picture.gif",
         "-o picture",
         "-o -  --json",
         "--width 4 --width 5",
