@@ -191,10 +191,11 @@ impl Bytes {
         let place = *self.meshes.entry(Arc::as_ptr(mesh)).or_insert(next);
         self.integer(place);
         if place == next {
-            let MeshData { positions, normals, uvs, indices } = mesh.data();
+            let MeshData { positions, normals, uvs, colors, indices } = mesh.data();
             self.block(positions.as_flattened(), f32::to_le_bytes);
             self.block(normals.as_flattened(), f32::to_le_bytes);
             self.block(uvs.as_flattened(), f32::to_le_bytes);
+            self.block(colors.as_flattened(), f32::to_le_bytes);
             self.block(indices.as_flattened(), u32::to_le_bytes);
         }
     }
