@@ -75,6 +75,9 @@ pub(crate) struct RenderArgs {
     pub(crate) picture: PictureArgs,
 
     #[command(flatten)]
+    pub(crate) passes: PassArgs,
+
+    #[command(flatten)]
     pub(crate) work: WorkArgs,
 
     #[command(flatten)]
@@ -140,6 +143,23 @@ pub(crate) struct PictureArgs {
     /// Make the picture brighter (or darker, below 0) by EV stops
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure)]
     pub(crate) exposure: Option<f64>,
+}
+
+/// What is written beside the picture.
+#[derive(Debug, Default, ClapArgs)]
+#[command(next_help_heading = "Passes")]
+pub(crate) struct PassArgs {
+    /// Write these layers beside the picture, into the same .exr file: `all`, or names parted by commas
+    ///
+    /// `terms` (ambient, diffuse, specular, reflection, transmission, background) and `lights` (all_ambient,
+    /// all_background, one light.NAME for each light) each add up to the picture, exactly. The others: ao, depth,
+    /// distance, position, normal, geometric_normal, uv, object_id, material_id, cost.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) passes: Vec<String>,
+
+    /// Write each layer into a file of its own, as picture.NAME.exr
+    #[arg(long, requires = "passes")]
+    pub(crate) separate_passes: bool,
 }
 
 /// What decides how long it takes, and nothing in the pixels.

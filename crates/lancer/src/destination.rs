@@ -100,15 +100,31 @@ fn write_to_stdout(image: &Image) -> Result<(), Error> {
 }
 
 fn write_to_file(path: &Path, format: ImageFormat, image: &Image, cancel: &CancelToken) -> Result<(), Error> {
+    write_file(path, cancel, |out| write(format, image, &Metadata::default(), out))
+}
+
+/// Writes a file by `write`, whole or not at all, unless the user asks to stop before it is written.
+///
+/// # Errors
+/// It cannot be written, or the user asked to stop.
+pub(crate) fn write_file(
+    path: &Path,
+    cancel: &CancelToken,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
     // A pipe, in which nothing can be unwound, may wait for its reader for ever.
     let is_replaced = fs::metadata(path).map_or(true, |found| found.is_file());
     let _handled = is_replaced.then(|| interrupt::only_cancels(cancel));
     let written = write_atomically(path, |out| {
         let mut out = UntilCancelled { out, cancel };
-        write(format, image, &Metadata::default(), &mut out)?;
+        write(&mut out)?;
         out.flush()
     });
-    written.map_err(|error| Error::output(path.display().to_string(), &error.source))
+    // Once the user asked to stop, it is not the file's fault.
+    written.map_err(|error| match cancel.is_cancelled() {
+        true => Error::Interrupted,
+        false => Error::output(path.display().to_string(), &error.source),
+    })
 }
 
 /// A writer that fails once the user asked to stop, so that what was written so far is dropped.
@@ -140,7 +156,7 @@ impl<W: Write> Write for UntilCancelled<'_, W> {
 ///
 /// Permissions do not tell: read-only file systems, quotas and access lists have their say. So a nameless file is
 /// made in the directory, which the system takes away again whatever happens.
-fn check_writable(path: &Path) -> io::Result<()> {
+pub(crate) fn check_writable(path: &Path) -> io::Result<()> {
     // What is written is what a symbolic link leads to.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     match fs::metadata(path) {

@@ -6,6 +6,7 @@
 use crate::args::{PictureArgs, ReadingArgs, RenderArgs, WorkArgs};
 use crate::destination::Destination;
 use crate::error::Error;
+use crate::passes::PassFiles;
 use crate::source::Source;
 use lancer_core::accel::{Accelerator, KdSettings};
 use lancer_core::camera::Camera;
@@ -15,18 +16,25 @@ use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
 use lancer_io::limits::Limits;
+use std::ffi::OsStr;
 use std::num::NonZero;
 
 /// What to render, how, and where to.
 pub(crate) struct Job {
+    pub(crate) setup: Setup,
+    pub(crate) destination: Destination,
+    pub(crate) passes: Option<PassFiles>,
+    pub(crate) json: bool,
+    pub(crate) quiet: bool,
+}
+
+/// What to render and how.
+pub(crate) struct Setup {
     pub(crate) source: Source,
     pub(crate) load: LoadOptions,
     pub(crate) compile: CompileOptions,
     pub(crate) threads: usize,
     pub(crate) tile_size: u32,
-    pub(crate) destination: Destination,
-    pub(crate) json: bool,
-    pub(crate) quiet: bool,
     picture: PictureArgs,
 }
 
@@ -46,24 +54,37 @@ impl Job {
     /// They contradict one another; a setting is out of its range; there is no such scene; the output cannot be
     /// written.
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Error> {
-        let RenderArgs { scene, output, picture, work, reading, json, quiet } = args;
-        // The values that are not given are the defaults, which no given one can make illegal.
-        settings_for(&picture, Settings::default()).validate().map_err(usage)?;
-        let source = Source::find(scene.as_deref())?;
-        let destination = Destination::find(output.as_deref(), &source)?;
+        let RenderArgs { scene, output, picture, passes, work, reading, json, quiet } = args;
+        let setup = Setup::new(scene.as_deref(), picture, &work, reading)?;
+        let destination = Destination::find(output.as_deref(), &setup.source)?;
         if json && destination == Destination::Stdout {
             return Err(Error::usage("--json and the picture cannot both go to standard output"));
         }
+        let passes = PassFiles::new(passes, &destination)?;
         destination.check()?;
+        Ok(Self { setup, destination, passes, json, quiet })
+    }
+}
+
+impl Setup {
+    /// What the words mean.
+    ///
+    /// # Errors
+    /// A setting is out of its range; there is no such scene.
+    pub(crate) fn new(
+        scene: Option<&OsStr>,
+        picture: PictureArgs,
+        work: &WorkArgs,
+        reading: ReadingArgs,
+    ) -> Result<Self, Error> {
+        // The values that are not given are the defaults, which no given one can make illegal.
+        settings_for(&picture, Settings::default()).validate().map_err(usage)?;
         Ok(Self {
-            source,
+            source: Source::find(scene)?,
             load: load_options(reading),
-            compile: compile_options(&work),
+            compile: compile_options(work),
             threads: work.threads.map_or_else(all_cores, |threads| threads as usize),
             tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
-            destination,
-            json,
-            quiet,
             picture,
         })
     }
@@ -112,7 +133,8 @@ impl Job {
         })
     }
 
-    fn scene_fault(&self, error: impl std::error::Error) -> Error {
+    /// A fault of the scene as a whole.
+    pub(crate) fn scene_fault(&self, error: impl std::error::Error) -> Error {
         Error::Scene(self.source.diagnostic(error).into())
     }
 }

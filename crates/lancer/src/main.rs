@@ -12,6 +12,7 @@ mod error;
 mod interrupt;
 mod job;
 mod json;
+mod passes;
 mod process;
 mod progress;
 mod report;

@@ -3,6 +3,7 @@
 //! The names of the JSON's members are part of the contract with scripts: members may be added, and none renamed.
 
 use crate::job::{Job, Shot};
+use crate::passes::LayersJson;
 use crate::progress::{rays_per_second, short_count};
 use crate::{json, process};
 use lancer_core::Rgb;
@@ -21,6 +22,7 @@ pub(crate) struct Report<'a> {
     pub(crate) world: WorldStatistics,
     pub(crate) rays: RayCounts,
     pub(crate) stages: Stages,
+    pub(crate) layers: Option<LayersJson>,
     pub(crate) warnings: &'a [Diagnostic],
 }
 
@@ -60,17 +62,18 @@ impl Report<'_> {
     pub(crate) fn json(&self) -> String {
         let (width, height) = self.shot.size();
         json::object(&RenderJson {
-            scene: self.job.source.to_string(),
+            scene: self.job.setup.source.to_string(),
             image: ImageJson { width, height },
             samples: self.shot.settings.samples,
             depth: self.shot.settings.depth,
-            threads: self.job.threads,
-            accelerator: self.job.compile.accelerator.name(),
+            threads: self.job.setup.threads,
+            accelerator: self.job.setup.compile.accelerator.name(),
             rays: self.rays.into(),
             seconds: self.stages.into(),
             world: self.world.into(),
             peak_memory_bytes: process::peak_memory_bytes(),
             output: self.job.destination.to_string(),
+            passes: self.layers.as_ref(),
             warnings: self.warnings.iter().map(json::DiagnosticJson::from).collect(),
         })
     }
@@ -128,6 +131,8 @@ struct RenderJson<'a> {
     world: WorldJson,
     peak_memory_bytes: Option<u64>,
     output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passes: Option<&'a LayersJson>,
     warnings: Vec<json::DiagnosticJson<'a>>,
 }
 

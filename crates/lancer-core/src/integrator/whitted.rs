@@ -111,8 +111,13 @@ impl<'w> Whitted<'w> {
         counts.primary += 1;
         self.world.intersect(ray).map_or(1.0, |hit| {
             let (at, _) = self.world.seen_surface(ray, &hit);
-            self.occlusion.factor(self.world, &at, key, counts)
+            self.occlusion_at(&at, key, counts)
         })
+    }
+
+    /// c_a at a surface, by the key of the ray that met it.
+    pub fn occlusion_at(&self, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
+        self.occlusion.factor(self.world, at, key, counts)
     }
 }
 

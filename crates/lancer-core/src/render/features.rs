@@ -62,7 +62,7 @@ pub fn feature_at(
 }
 
 /// The surface that a camera ray shows.
-fn seen(world: &World, ray: &Ray) -> Option<Intersection> {
+pub(super) fn seen(world: &World, ray: &Ray) -> Option<Intersection> {
     let hit = world.intersect(ray)?;
     Some(world.seen_surface(ray, &hit).0)
 }

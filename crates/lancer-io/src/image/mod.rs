@@ -4,5 +4,6 @@
 
 mod decode;
 pub mod encode;
+pub mod layers;
 
 pub use decode::load_texture;

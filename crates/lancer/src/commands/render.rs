@@ -3,11 +3,12 @@
 use crate::args::RenderArgs;
 use crate::error::Error;
 use crate::interrupt;
-use crate::job::{Job, Shot};
+use crate::job::{Job, Setup, Shot};
 use crate::progress::Progress;
 use crate::report::{self, Report, Stages};
 use crate::terminal;
-use lancer_core::render::{CancelToken, Control, Render, render, with_threads};
+use lancer_core::render::passes::{Layer, Pass, PassRender, render_passes};
+use lancer_core::render::{CancelToken, Control, Render, RenderError, render, with_threads};
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
@@ -19,62 +20,77 @@ use std::time::{Duration, Instant};
 /// See [`Error`].
 pub(crate) fn run(args: RenderArgs) -> Result<(), Error> {
     let job = Job::new(args)?;
-    let work = with_threads(job.threads, || run_job(&job));
-    work.map_err(|error| Error::Render(format!("cannot start {} threads: {error}", job.threads)))?
+    let work = with_threads(job.setup.threads, || run_job(&job));
+    work.map_err(|error| Error::Render(format!("cannot start {} threads: {error}", job.setup.threads)))?
 }
 
 fn run_job(job: &Job) -> Result<(), Error> {
+    let setup = &job.setup;
     let progress = Progress::new(job.quiet);
     let mut stages = Stages::default();
 
-    let loaded = timed(&mut stages.load, || progress.during("reading", || job.source.load(&job.load)))?;
+    let loaded = timed(&mut stages.load, || progress.during("reading", || setup.source.load(&setup.load)))?;
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
-    let shot = job.shot(&scene)?;
+    let shot = setup.shot(&scene)?;
+    let plan = job.passes.as_ref().map(|files| files.plan(&scene)).transpose()?;
 
     let world =
-        timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &job.compile)))
-            .map_err(|error| LoadError::from(job.source.diagnostic(error)))?;
+        timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &setup.compile)))
+            .map_err(|error| LoadError::from(setup.source.diagnostic(error)))?;
+    let table = plan.as_ref().map(|plan| plan.table(&scene, &world));
     drop(scene);
 
     let cancel = CancelToken::default();
-    let picture = timed(&mut stages.render, || trace(job, &shot, &world, &cancel, &progress))?;
-    timed(&mut stages.write, || write(job, &shot, &picture, &cancel, &progress))?;
+    let (picture, layers) = timed(&mut stages.render, || {
+        let passes = plan.as_ref().map(|plan| plan.passes.as_slice());
+        trace(setup, &shot, &world, passes, &cancel, &progress)
+    })?;
+    timed(&mut stages.write, || {
+        progress.during("writing", || {
+            let image = shot.tone.expose(&picture.image);
+            match &plan {
+                None => job.destination.write(&image, &cancel),
+                Some(plan) => plan.write(&image, &layers, &cancel),
+            }
+        })
+    })?;
 
     let late = report::warnings_about(&picture, &world, &shot);
-    let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
+    let late = late.iter().map(|message| setup.source.diagnostic(message)).collect::<Vec<_>>();
     late.iter().for_each(terminal::tell_warning);
     warnings.extend(late);
     let (world, rays) = (world.statistics(), picture.rays);
-    tell(&Report { job, shot: &shot, world, rays, stages, warnings: &warnings })
+    let layers = table;
+    tell(&Report { job, shot: &shot, world, rays, stages, layers, warnings: &warnings })
 }
 
+/// Renders the picture, and the layers of passes where some are asked for.
 fn trace(
-    job: &Job,
+    setup: &Setup,
     shot: &Shot,
     world: &World,
+    passes: Option<&[Pass]>,
     cancel: &CancelToken,
     progress: &Progress,
-) -> Result<Render, Error> {
+) -> Result<(Render, Vec<Layer>), Error> {
     let _handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
     let control = Control {
         cancel: cancel.clone(),
         on_tile: &|tile, rays| bar.advance(tile, rays),
-        tile_size: job.tile_size,
+        tile_size: setup.tile_size,
     };
-    Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
-}
-
-fn write(
-    job: &Job,
-    shot: &Shot,
-    picture: &Render,
-    cancel: &CancelToken,
-    progress: &Progress,
-) -> Result<(), Error> {
-    progress.during("writing", || job.destination.write(&shot.tone.expose(&picture.image), cancel))
+    let &Shot { camera, settings, region, tone } = shot;
+    let Some(passes) = passes else {
+        return Ok((render(world, &camera, &settings, region, &control)?, Vec::new()));
+    };
+    match render_passes(world, &camera, &settings, region, passes, tone.factor(), &control) {
+        Ok(PassRender { render, layers }) => Ok((render, layers)),
+        Err(error @ RenderError::Layers { .. }) => Err(Error::usage(error.to_string())),
+        Err(error) => Err(error.into()),
+    }
 }
 
 fn tell(report: &Report) -> Result<(), Error> {
@@ -85,7 +101,7 @@ fn tell(report: &Report) -> Result<(), Error> {
 }
 
 /// Does `work` and notes how long it took.
-fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
+pub(super) fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     *duration = start.elapsed();
