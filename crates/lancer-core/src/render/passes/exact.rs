@@ -80,11 +80,13 @@ fn settle(missing: f64, parts: &mut [f64]) {
 
 /// The distance from a finite `f32` to the next larger one in its binade.
 fn last_place(value: f32) -> f64 {
-    /// Of the bias of the exponents, and of the bits of the mantissa.
+    /// The logarithm of the least `f32` above 0, which the smallest normal ones have for a last place.
     const LEAST: i64 = -149;
-    let exponent = i64::from(value.abs().to_bits() >> f32::MANTISSA_DIGITS - 1).max(1) - 1;
-    // 2 to this power is a normal `f64`.
-    f64::from_bits(((LEAST + exponent + 1023) as u64) << (f64::MANTISSA_DIGITS - 1))
+    /// What is added to the exponents of `f64`.
+    const BIAS: i64 = 1023;
+    let binade = i64::from(value.abs().to_bits() >> (f32::MANTISSA_DIGITS - 1)).max(1) - 1;
+    // This power of two is a normal `f64`.
+    f64::from_bits(((LEAST + binade + BIAS) as u64) << (f64::MANTISSA_DIGITS - 1))
 }
 
 #[cfg(test)]

@@ -21,6 +21,7 @@ pub use names::{UnknownPass, light_names, select};
 use super::driver::{Frame, Painter};
 use super::features::seen;
 use super::{Control, Region, Render, RenderError};
+use crate::accel::Visits;
 use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::geometry::{DVec3, Ray};
@@ -70,7 +71,8 @@ pub enum Pass {
     ObjectId,
     /// Which material: 1 and its place in the scene's; 0 for none.
     MaterialId,
-    /// What the pixel took.
+    /// What the pixel took: rays, nodes of trees that were looked at for them, and triangles that were tested. The last
+    /// two are the accelerator's; see [`Tally`](crate::accel::Tally).
     Cost,
 }
 
@@ -89,8 +91,8 @@ pub enum Samples {
     Factor(Vec<f32>),
     /// Ids.
     Id(Vec<u32>),
-    /// Counts of rays.
-    Counts(Vec<[u32; 1]>),
+    /// Rays, nodes of trees and triangles: see [`Tally`](crate::accel::Tally).
+    Counts(Vec<[u32; 3]>),
 }
 
 /// One pass of a picture.
@@ -167,6 +169,7 @@ struct Wants {
     sources: usize,
     occlusion: bool,
     features: bool,
+    cost: bool,
 }
 
 impl Wants {
@@ -178,6 +181,7 @@ impl Wants {
             sources: if sources { SOURCES_BEFORE_LIGHTS + lights } else { 0 },
             occlusion: any(|pass| pass == Pass::Occlusion),
             features: any(Pass::is_feature),
+            cost: any(|pass| pass == Pass::Cost),
         }
     }
 }
@@ -209,10 +213,7 @@ impl Pass {
     /// Whether it tells of the surface at the pixel's centre.
     fn is_feature(self) -> bool {
         use Pass::{Depth, Distance, GeometricNormal, MaterialId, Normal, ObjectId, Position, Uv};
-        match self {
-            Depth | Distance | Position | Normal | GeometricNormal | Uv | ObjectId | MaterialId => true,
-            _ => false,
-        }
+        matches!(self, Depth | Distance | Position | Normal | GeometricNormal | Uv | ObjectId | MaterialId)
     }
 }
 
@@ -238,7 +239,7 @@ impl Samples {
             Self::Coordinates(values) => values.resize(pixels, [0.0; 2]),
             Self::Length(values) | Self::Factor(values) => values.resize(pixels, 0.0),
             Self::Id(values) => values.resize(pixels, 0),
-            Self::Counts(values) => values.resize(pixels, [0; 1]),
+            Self::Counts(values) => values.resize(pixels, [0; 3]),
         }
         samples
     }
@@ -249,7 +250,7 @@ impl Samples {
             Self::Coordinates(_) => size_of::<[f32; 2]>(),
             Self::Length(_) | Self::Factor(_) => size_of::<f32>(),
             Self::Id(_) => size_of::<u32>(),
-            Self::Counts(_) => size_of::<[u32; 1]>(),
+            Self::Counts(_) => size_of::<[u32; 3]>(),
         };
         bytes as u64
     }
@@ -304,6 +305,8 @@ struct PassTile {
     occlusion: f64,
     /// The rays of the pixel.
     rays: u64,
+    /// What they looked at.
+    visits: Visits,
     shares: exact::Shares,
     layers: Vec<Layer>,
 }
@@ -318,6 +321,7 @@ impl Painter for PassPainter<'_> {
             gather: Gather::new(self.wants.sources),
             occlusion: 0.0,
             rays: 0,
+            visits: Visits::default(),
             shares: exact::Shares::default(),
             layers: self.passes.iter().map(empty).collect(),
         }
@@ -326,8 +330,12 @@ impl Painter for PassPainter<'_> {
     fn trace(&self, ray: Ray, key: Key, tile: &mut PassTile, counts: &mut RayCounts) -> Rgb {
         let before = *counts;
         tile.gather.begin();
-        let radiance =
-            self.integrator.radiance(ray, &self.media, key, &mut tile.scratch, counts, &mut tile.gather);
+        let PassTile { scratch, gather, visits, .. } = tile;
+        let radiance = if self.wants.cost {
+            self.integrator.radiance_tallied(ray, &self.media, key, scratch, counts, gather, visits)
+        } else {
+            self.integrator.radiance(ray, &self.media, key, scratch, counts, gather)
+        };
         tile.gather.end(counts.replaced > before.replaced);
         tile.rays += counts.total() - before.total();
         if self.wants.occlusion {
@@ -371,12 +379,16 @@ impl Painter for PassPainter<'_> {
                     values.push(surface.map_or([0.0; 2], |at| at.uv.as_vec2().to_array()));
                 }
                 Samples::Id(values) => values.push(surface.map_or(0, |at| id(*pass, &at))),
-                Samples::Counts(values) => values.push([u32::try_from(tile.rays).unwrap_or(u32::MAX)]),
+                Samples::Counts(values) => {
+                    let counts = [tile.rays, tile.visits.nodes(), tile.visits.triangles()];
+                    values.push(counts.map(|count| u32::try_from(count).unwrap_or(u32::MAX)));
+                }
             }
         }
         tile.gather.clear();
         tile.occlusion = 0.0;
         tile.rays = 0;
+        tile.visits = Visits::default();
     }
 
     fn end_tile(&self, area: &Region, tile: PassTile) {

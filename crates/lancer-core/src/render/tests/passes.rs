@@ -236,6 +236,39 @@ fn rays_of_the_pixels_are_the_rays_of_the_picture() {
     assert_eq!(counts.iter().map(|&[rays, ..]| u64::from(rays)).sum::<u64>(), picture.render.rays.total());
 }
 
+#[test]
+fn trees_look_at_nodes_to_test_fewer_triangles() {
+    let scene = rich();
+    let totals = |accelerator: Accelerator| {
+        let options = CompileOptions { accelerator, ..CompileOptions::default() };
+        let picture = passes_of(&scene, &options, &["cost"], 1.0);
+        let Samples::Counts(counts) = &picture.layers[0].samples else { panic!("no counts") };
+        let total = |place: usize| counts.iter().map(|counts| u64::from(counts[place])).sum::<u64>();
+        [total(0), total(1), total(2)]
+    };
+    let [bvh, kd, none] = [Accelerator::Bvh, Accelerator::KdTree, Accelerator::BruteForce].map(totals);
+    assert!(bvh[0] == none[0] && kd[0] == none[0], "{bvh:?} {kd:?} {none:?}");
+    assert_eq!(none[1], 0);
+    for tree in [bvh, kd] {
+        assert!(tree[1] > 0 && tree[2] > 0 && 5 * tree[2] < none[2], "{tree:?} of {none:?}");
+    }
+}
+
+/// Each ray of a picture of one mesh alone tests all of its triangles, where nothing finds them.
+#[test]
+fn brute_force_tests_every_triangle_for_every_ray() {
+    let mut scene = Scene::new("mesh");
+    let mesh = Mesh::new(ball(6, 9)).unwrap();
+    let triangles = mesh.triangle_count() as u64;
+    scene.add(Node::mesh("mesh", mesh));
+    scene.settings = Settings { width: 8, height: 6, ..Settings::default() };
+    let options = CompileOptions { accelerator: Accelerator::BruteForce, ..CompileOptions::default() };
+    let picture = passes_of(&scene, &options, &["cost"], 1.0);
+    let Samples::Counts(counts) = &picture.layers[0].samples else { panic!("no counts") };
+    let tested = counts.iter().map(|&[rays, nodes, tested]| (u64::from(rays), nodes, u64::from(tested)));
+    assert!(tested.clone().all(|found| found == (1, 0, triangles)), "{:?}", tested.collect::<Vec<_>>());
+}
+
 /// A light so bright that its pixels are no `f32`.
 #[test]
 fn what_was_replaced_by_black_is_in_no_layer() {
