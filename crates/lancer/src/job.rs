@@ -89,6 +89,12 @@ impl Setup {
         })
     }
 
+    /// Whether the scene is a bare model that nothing was changed of: then it is up to the program how it is shown.
+    pub(crate) fn is_bare_model(&self) -> bool {
+        let is_model = matches!(&self.source, Source::File(path) if !lancer_io::is_scene_file(path));
+        is_model && self.load.overrides.is_empty()
+    }
+
     /// What to render of `scene`.
     ///
     /// # Errors
@@ -121,22 +127,33 @@ impl Setup {
     }
 
     fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Camera, Error> {
-        let name = self.picture.camera.as_deref();
-        scene.camera_named(name).ok_or_else(|| {
-            let message = format!("the scene has no camera `{}`", name.unwrap_or_default());
-            let names = scene.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
-            let hint = match names.as_slice() {
-                [] => "leave out --camera: the scene has one camera, without a name".into(),
-                names => format!("its cameras are {}", names.join(", ")),
-            };
-            Error::usage_with_hint(message, hint)
-        })
+        camera_named(scene, self.picture.camera.as_deref(), "--camera")
     }
 
     /// A fault of the scene as a whole.
     pub(crate) fn scene_fault(&self, error: impl std::error::Error) -> Error {
         Error::Scene(self.source.diagnostic(error).into())
     }
+}
+
+/// The scene's camera of a name that a flag gives, or without a name its main one.
+///
+/// # Errors
+/// There is none.
+pub(crate) fn camera_named<'a>(
+    scene: &'a Scene,
+    name: Option<&str>,
+    flag: &str,
+) -> Result<&'a Camera, Error> {
+    scene.camera_named(name).ok_or_else(|| {
+        let message = format!("the scene has no camera `{}`", name.unwrap_or_default());
+        let names = scene.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
+        let hint = match names.as_slice() {
+            [] => format!("leave out {flag}: the scene has one camera, without a name"),
+            names => format!("its cameras are {}", names.join(", ")),
+        };
+        Error::usage_with_hint(message, hint)
+    })
 }
 
 impl Shot {

@@ -11,6 +11,7 @@ mod destination;
 #[cfg(test)]
 mod documents;
 mod error;
+mod film;
 mod interrupt;
 mod job;
 mod json;

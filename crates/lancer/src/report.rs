@@ -40,7 +40,8 @@ pub(crate) struct Stages {
 }
 
 impl Stages {
-    fn total(&self) -> Duration {
+    /// All of them.
+    pub(crate) fn total(&self) -> Duration {
         self.load + self.build + self.render + self.write
     }
 }
@@ -89,7 +90,8 @@ pub(crate) fn warnings_about(picture: &Render, world: &World, shot: &Shot) -> Ve
     warnings
 }
 
-fn cut_short(rays: &RayCounts) -> Vec<String> {
+/// What to warn of after any rays.
+pub(crate) fn cut_short(rays: &RayCounts) -> Vec<String> {
     let mut warnings = Vec::new();
     if rays.truncated > 0 {
         let count = camera_rays(rays.truncated);
@@ -138,13 +140,14 @@ struct RenderJson<'a> {
 
 /// The pixels that were written: those of the region, where one was asked for.
 #[derive(Serialize)]
-struct ImageJson {
-    width: u32,
-    height: u32,
+pub(crate) struct ImageJson {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
 }
 
+/// Rays by kind.
 #[derive(Serialize)]
-struct RaysJson {
+pub(crate) struct RaysJson {
     primary: u64,
     shadow: u64,
     ao: u64,
@@ -163,8 +166,9 @@ impl From<RayCounts> for RaysJson {
     }
 }
 
+/// Seconds by stage.
 #[derive(Serialize)]
-struct SecondsJson {
+pub(crate) struct SecondsJson {
     load: f64,
     build: f64,
     render: f64,

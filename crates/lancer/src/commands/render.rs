@@ -100,10 +100,10 @@ fn tell(report: &Report) -> Result<(), Error> {
     if report.job.json { terminal::print(report.json()) } else { Ok(()) }
 }
 
-/// Does `work` and notes how long it took.
+/// Does `work` and notes how long it took, beside what was noted before.
 pub(super) fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
-    *duration = start.elapsed();
+    *duration += start.elapsed();
     result
 }

@@ -1,11 +1,13 @@
 //! The program as its users meet it: run from outside, judged by exit codes, streams and files.
 
 mod errors;
+mod films;
 mod inspect;
 #[cfg(unix)]
 mod interrupt;
 mod messages;
 mod output;
+mod passes;
 mod picture;
 mod sandbox;
 #[cfg(unix)]
