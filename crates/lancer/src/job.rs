@@ -15,7 +15,9 @@ use lancer_core::render::{Control, Region, RenderError};
 use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
+use lancer_io::image::Metadata;
 use lancer_io::limits::Limits;
+use lancer_io::provenance::{Provenance, SceneHash, record_overrides};
 use std::ffi::OsStr;
 use std::num::NonZero;
 
@@ -26,6 +28,7 @@ pub(crate) struct Job {
     pub(crate) passes: Option<PassFiles>,
     pub(crate) json: bool,
     pub(crate) quiet: bool,
+    dpi: Option<u16>,
 }
 
 /// What to render and how.
@@ -54,15 +57,46 @@ impl Job {
     /// They contradict one another; a setting is out of its range; there is no such scene; the output cannot be
     /// written.
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Error> {
-        let RenderArgs { scene, output, picture, passes, work, reading, json, quiet } = args;
+        let RenderArgs { scene, output, picture, passes, work, reading, json, quiet, encoding } = args;
         let setup = Setup::new(scene.as_deref(), picture, &work, reading)?;
-        let destination = Destination::find(output.as_deref(), &setup.source)?;
-        if json && destination == Destination::Stdout {
+        let destination = Destination::find(output.as_deref(), &encoding, &setup.source)?;
+        if json && destination.is_stdout() {
             return Err(Error::usage("--json and the picture cannot both go to standard output"));
         }
         let passes = PassFiles::new(passes, &destination)?;
         destination.check()?;
-        Ok(Self { setup, destination, passes, json, quiet })
+        Ok(Self { setup, destination, passes, json, quiet, dpi: encoding.dpi })
+    }
+
+    /// What to render of `scene`.
+    ///
+    /// # Errors
+    /// As [`Setup::shot`]; or the format cannot hold the picture.
+    pub(crate) fn shot(&self, scene: &Scene) -> Result<Shot, Error> {
+        let shot = self.setup.shot(scene)?;
+        let (width, height) = shot.size();
+        self.destination.encoding().check_size(width, height).map_err(usage)?;
+        Ok(shot)
+    }
+
+    /// What the file says of the picture beside its pixels.
+    pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
+        let (set, unrecorded) = record_overrides(&self.setup.load.overrides);
+        let record = Provenance {
+            lancer: Provenance::VERSION.to_owned(),
+            scene: self.setup.source.record(),
+            name: scene.name.clone(),
+            hash: SceneHash::of(scene, &shot.camera),
+            camera: self.setup.picture.camera.clone(),
+            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
+            render: shot.settings,
+            tone: shot.tone,
+            set,
+            unrecorded,
+            encoding: self.destination.encoding(),
+            dpi: self.dpi,
+        };
+        record.metadata()
     }
 }
 
@@ -114,7 +148,10 @@ impl Setup {
             let Settings { width, height, .. } = settings;
             return Err(usage(RenderError::Region { region, width, height }));
         }
-        let tone = Tone { exposure: self.picture.exposure.unwrap_or(scene.tone.exposure) };
+        let tone = Tone {
+            exposure: self.picture.exposure.unwrap_or(scene.tone.exposure),
+            curve: self.picture.tone.unwrap_or(scene.tone.curve),
+        };
         let shot = Shot { camera, settings, tone, region };
         let tiles = shot.tiles(self.tile_size);
         if tiles > MAX_TILES {
@@ -196,7 +233,7 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
     }
 }
 
-fn load_options(reading: ReadingArgs) -> LoadOptions {
+pub(crate) fn load_options(reading: ReadingArgs) -> LoadOptions {
     LoadOptions {
         limits: Limits::default(),
         allow_outside: reading.access.allow_outside,
@@ -204,7 +241,7 @@ fn load_options(reading: ReadingArgs) -> LoadOptions {
     }
 }
 
-fn compile_options(work: &WorkArgs) -> CompileOptions {
+pub(crate) fn compile_options(work: &WorkArgs) -> CompileOptions {
     let kd = KdSettings { leaf: work.kd_leaf, depth: work.kd_depth };
     let chosen = if kd == KdSettings::default() { Accelerator::default() } else { Accelerator::KdTree };
     CompileOptions {

@@ -8,16 +8,20 @@ use lancer_core::render::CancelToken;
 use lancer_core::render::passes::{Layer, Pass, light_names, select};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
-use lancer_io::image::encode::{ImageFormat, Metadata};
 use lancer_io::image::layers::{channel_names, write_layer, write_layers};
+use lancer_io::image::{Encoding, ImageFormat, Metadata};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+
+/// Bits of a float in a layer.
+const LAYER_BITS: u8 = 32;
 
 /// The passes as typed, and where they go.
 pub(crate) struct PassFiles {
     words: Vec<String>,
     separate: bool,
     path: PathBuf,
+    encoding: Encoding,
 }
 
 /// The passes of a scene that is known.
@@ -27,6 +31,7 @@ pub(crate) struct PassPlan {
     lights: Vec<String>,
     separate: bool,
     path: PathBuf,
+    encoding: Encoding,
 }
 
 impl PassFiles {
@@ -40,8 +45,14 @@ impl PassFiles {
             return Ok(None);
         }
         match destination {
-            Destination::File { path, format: ImageFormat::Exr, .. } => {
-                Ok(Some(Self { words, separate, path: path.clone() }))
+            Destination::File { path, encoding, .. } if encoding.format() == ImageFormat::Exr => {
+                if encoding.bits() != LAYER_BITS {
+                    return Err(Error::usage_with_hint(
+                        format!("layers of {} bits do not add up to their picture", encoding.bits()),
+                        "leave out --bits: layers have 32",
+                    ));
+                }
+                Ok(Some(Self { words, separate, path: path.clone(), encoding: *encoding }))
             }
             _ => Err(Error::usage_with_hint(
                 "passes are written to OpenEXR files alone",
@@ -64,6 +75,7 @@ impl PassFiles {
             lights: light_names(&scene.lights),
             separate: self.separate,
             path: self.path.clone(),
+            encoding: self.encoding,
         };
         if self.separate {
             for &pass in &plan.passes {
@@ -88,14 +100,23 @@ impl PassPlan {
     ///
     /// # Errors
     /// One cannot be written, or the user asked to stop before it was.
-    pub(crate) fn write(&self, image: &Image, layers: &[Layer], cancel: &CancelToken) -> Result<(), Error> {
-        let metadata = Metadata::default();
+    pub(crate) fn write(
+        &self,
+        image: &Image,
+        layers: &[Layer],
+        metadata: Metadata,
+        cancel: &CancelToken,
+    ) -> Result<(), Error> {
+        // The record of how a picture was made is for files that hold it alone.
+        let metadata = Metadata { provenance: None, ..metadata };
         let together = if self.separate { &[] } else { layers };
-        write_file(&self.path, cancel, |out| write_layers(image, together, &self.lights, &metadata, out))?;
+        write_file(&self.path, cancel, |out| {
+            write_layers(image, together, &self.lights, self.encoding, &metadata, out)
+        })?;
         if self.separate {
             for layer in layers {
                 let path = self.path_of(layer.pass);
-                write_file(&path, cancel, |out| write_layer(image, layer, &metadata, out))?;
+                write_file(&path, cancel, |out| write_layer(image, layer, self.encoding, &metadata, out))?;
             }
         }
         Ok(())

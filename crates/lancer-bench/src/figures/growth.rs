@@ -2,7 +2,7 @@
 
 use super::{Rays, nanoseconds};
 use crate::Failure;
-use crate::record::{command_line, growth, median, seconds, write};
+use crate::record::{command_line, growth, seconds, write};
 use crate::speed::scene_of;
 use crate::subjects::terrain;
 use lancer_core::accel::Accelerator;
@@ -16,11 +16,11 @@ use std::path::Path;
 const LEAST: u32 = 512;
 /// Brute force stops here, and traces only as many rays as make about so many tests.
 const MOST_BY_FORCE: u32 = 1 << 15;
-const TESTS_BY_FORCE: usize = 200_000_000;
+const TESTS_BY_FORCE: usize = 20_000_000;
 /// Exponents are fitted from here on: below, the time of a ray is not that of the search.
 const FITTED: f64 = 8000.0;
 
-/// One accelerator on one mesh; times are medians.
+/// One accelerator on one mesh. Times are the least of the runs: whatever else the machine does can only add to them.
 struct Row {
     accelerator: Accelerator,
     triangles: usize,
@@ -31,7 +31,7 @@ struct Row {
 
 #[expect(clippy::print_stdout, reason = "the table is what the command is for")]
 pub(crate) fn measure(most: u32, runs: usize, data: Option<&Path>) -> Result<(), Failure> {
-    println!("A terrain; nanoseconds a ray to its nearest hit, one thread, medians of {runs} runs");
+    println!("A terrain; nanoseconds a ray to its nearest hit, one thread, the least of {runs} runs");
     println!(
         "{:<12} {:>9} {:>9} {:>10} {:>10}",
         "accelerator", "triangles", "build s", "camera ns", "mirror ns"
@@ -100,7 +100,8 @@ impl Row {
             camera.push(nanoseconds(&world, rays.camera.iter().step_by(step)));
             mirror.push(nanoseconds(&world, rays.mirror.iter().step_by(step)));
         }
-        let [build_seconds, camera, mirror] = [build, camera, mirror].map(|times| median(&times));
+        let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
+        let [build_seconds, camera, mirror] = [build, camera, mirror].map(least);
         Ok(Self { accelerator, triangles, build_seconds, camera, mirror })
     }
 

@@ -3,7 +3,7 @@
 //! In: frames of 8-bit sRGB, one after another. Out: bytes, the same for the same frames. All loop for ever. PNG and
 //! WebP keep every code; GIF has 256 colours, one palette for all frames, so that nothing flickers.
 
-use super::encode::Metadata;
+use super::Metadata;
 use color_quant::NeuQuant;
 use image_webp::{ColorType, WebPEncoder};
 use std::io::{self, Write};

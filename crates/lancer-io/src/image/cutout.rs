@@ -1,6 +1,6 @@
 //! Pictures of things without what is behind them.
 
-use super::encode::Metadata;
+use super::Metadata;
 use lancer_core::film::{Image, to_srgb8};
 use std::io::{self, Write};
 

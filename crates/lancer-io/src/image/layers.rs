@@ -7,17 +7,17 @@
 //! Source of the names: OpenEXR's "Technical introduction", on channel names and layers; `P`, `N`, `Ng` and `uv` are
 //! those that renderers and compositors agree on.
 
-use super::encode::Metadata;
+use super::encode::{exr_attributes, exr_layout};
+use super::{Encoding, Metadata};
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage,
-    Layer as ExrLayer, LayerAttributes, LineOrder, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer as ExrLayer, Text, Vec2, WritableImage,
 };
 use lancer_core::film::Image;
 use lancer_core::render::passes::{Layer, Pass, Samples};
 use std::io::{self, Cursor, Write};
 
 /// Writes a picture and its layers as one OpenEXR file. `lights` are the names of the lights, by
-/// [`light_names`](lancer_core::render::passes::light_names).
+/// [`light_names`](lancer_core::render::passes::light_names). Of `encoding` only the compression counts.
 ///
 /// # Errors
 /// The picture has no pixel, or a layer not as many; or `out` fails.
@@ -25,6 +25,7 @@ pub fn write_layers(
     image: &Image,
     layers: &[Layer],
     lights: &[String],
+    encoding: Encoding,
     metadata: &Metadata,
     out: impl Write,
 ) -> io::Result<()> {
@@ -32,15 +33,21 @@ pub fn write_layers(
     for Layer { pass, samples } in layers {
         channels.extend(channels_of(&prefix(*pass, lights), samples));
     }
-    write_channels(image, channels, metadata, out)
+    write_channels(image, channels, encoding, metadata, out)
 }
 
 /// Writes one layer of a picture as an OpenEXR file of its own, in channels without its name.
 ///
 /// # Errors
 /// As [`write_layers`].
-pub fn write_layer(image: &Image, layer: &Layer, metadata: &Metadata, out: impl Write) -> io::Result<()> {
-    write_channels(image, channels_of("", &layer.samples), metadata, out)
+pub fn write_layer(
+    image: &Image,
+    layer: &Layer,
+    encoding: Encoding,
+    metadata: &Metadata,
+    out: impl Write,
+) -> io::Result<()> {
+    write_channels(image, channels_of("", &layer.samples), encoding, metadata, out)
 }
 
 /// The channels of a pass in the file that has all of them, in the order of their places.
@@ -108,6 +115,7 @@ fn planes<T: Copy, const N: usize>(
 fn write_channels(
     image: &Image,
     channels: Vec<AnyChannel<FlatSamples>>,
+    encoding: Encoding,
     metadata: &Metadata,
     mut out: impl Write,
 ) -> io::Result<()> {
@@ -115,16 +123,12 @@ fn write_channels(
     if size.area() == 0 || channels.iter().any(|channel| channel.sample_data.len() != size.area()) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "a layer of another size than the picture"));
     }
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let attributes = LayerAttributes {
-        software_name: Text::new_or_none(&metadata.software),
-        ..LayerAttributes::default()
-    };
-    let layer = ExrLayer::new(size, attributes, encoding, AnyChannels::sort(channels.into()));
+    let layer = ExrLayer::new(
+        size,
+        exr_attributes(metadata),
+        exr_layout(encoding.compression()),
+        AnyChannels::sort(channels.into()),
+    );
     // The format's table of offsets is written last, so it needs a place that can be sought in.
     let mut bytes = Cursor::new(Vec::new());
     ExrImage::from_layer(layer).write().non_parallel().to_buffered(&mut bytes).map_err(to_io_error)?;

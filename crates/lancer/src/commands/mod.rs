@@ -1,6 +1,7 @@
 //! What the program does, one file a subcommand.
 
 mod check;
+mod compare;
 mod completions;
 mod info;
 mod man;
@@ -9,6 +10,7 @@ mod scenes;
 mod schema;
 mod thumbnail;
 mod turntable;
+mod verify;
 mod window;
 
 use crate::args::{Args, Command};
@@ -30,5 +32,7 @@ pub(crate) fn run(args: Args) -> Result<(), Error> {
         Some(Command::Schema) => schema::run(),
         Some(Command::Completions(args)) => completions::run(&args),
         Some(Command::Man) => man::run(),
+        Some(Command::Verify(args)) => verify::run(*args),
+        Some(Command::Compare(args)) => compare::run(&args),
     }
 }

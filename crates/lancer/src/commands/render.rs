@@ -3,12 +3,13 @@
 use crate::args::RenderArgs;
 use crate::error::Error;
 use crate::interrupt;
-use crate::job::{Job, Setup, Shot};
+use crate::job::{Job, Shot};
 use crate::progress::Progress;
 use crate::report::{self, Report, Stages};
 use crate::terminal;
+use lancer_core::integrator::RayCounts;
 use lancer_core::render::passes::{Layer, Pass, PassRender, render_passes};
-use lancer_core::render::{CancelToken, Control, Render, RenderError, render, with_threads};
+use lancer_core::render::{CancelToken, Control, Render, RenderError, Tile, render, with_threads};
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
@@ -32,8 +33,9 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let loaded = timed(&mut stages.load, || progress.during("reading", || setup.source.load(&setup.load)))?;
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
-    let shot = setup.shot(&scene)?;
+    let shot = job.shot(&scene)?;
     let plan = job.passes.as_ref().map(|files| files.plan(&scene)).transpose()?;
+    let metadata = timed(&mut stages.load, || job.metadata(&scene, &shot));
 
     let world =
         timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &setup.compile)))
@@ -42,17 +44,14 @@ fn run_job(job: &Job) -> Result<(), Error> {
     drop(scene);
 
     let cancel = CancelToken::default();
-    let (picture, layers) = timed(&mut stages.render, || {
-        let passes = plan.as_ref().map(|plan| plan.passes.as_slice());
-        trace(setup, &shot, &world, passes, &cancel, &progress)
+    let (picture, layers) = timed(&mut stages.render, || match &plan {
+        None => Ok((trace(&shot, setup.tile_size, &world, &cancel, &progress)?, Vec::new())),
+        Some(plan) => trace_passes(&shot, setup.tile_size, &world, &plan.passes, &cancel, &progress),
     })?;
     timed(&mut stages.write, || {
-        progress.during("writing", || {
-            let image = shot.tone.expose(&picture.image);
-            match &plan {
-                None => job.destination.write(&image, &cancel),
-                Some(plan) => plan.write(&image, &layers, &cancel),
-            }
+        progress.during("writing", || match &plan {
+            None => job.destination.write(&picture.image, shot.tone, &metadata, &cancel),
+            Some(plan) => plan.write(&shot.tone.expose(&picture.image), &layers, metadata, &cancel),
         })
     })?;
 
@@ -65,32 +64,54 @@ fn run_job(job: &Job) -> Result<(), Error> {
     tell(&Report { job, shot: &shot, world, rays, stages, layers, warnings: &warnings })
 }
 
-/// Renders the picture, and the layers of passes where some are asked for.
-fn trace(
-    setup: &Setup,
+/// Renders, and draws how it goes on; a request to stop cancels it.
+///
+/// # Errors
+/// It was cancelled, or failed.
+pub(super) fn trace(
     shot: &Shot,
+    tile_size: u32,
     world: &World,
-    passes: Option<&[Pass]>,
+    cancel: &CancelToken,
+    progress: &Progress,
+) -> Result<Render, Error> {
+    watched(shot, tile_size, cancel, progress, |control| {
+        Ok(render(world, &shot.camera, &shot.settings, shot.region, control)?)
+    })
+}
+
+/// As [`trace`], with the layers of passes.
+fn trace_passes(
+    shot: &Shot,
+    tile_size: u32,
+    world: &World,
+    passes: &[Pass],
     cancel: &CancelToken,
     progress: &Progress,
 ) -> Result<(Render, Vec<Layer>), Error> {
+    let &Shot { camera, settings, region, tone } = shot;
+    watched(shot, tile_size, cancel, progress, |control| {
+        match render_passes(world, &camera, &settings, region, passes, tone.factor(), control) {
+            Ok(PassRender { render, layers }) => Ok((render, layers)),
+            Err(error @ RenderError::Layers { .. }) => Err(Error::usage(error.to_string())),
+            Err(error) => Err(error.into()),
+        }
+    })
+}
+
+/// Draws how a render goes on; a request to stop cancels it.
+fn watched<T>(
+    shot: &Shot,
+    tile_size: u32,
+    cancel: &CancelToken,
+    progress: &Progress,
+    render: impl FnOnce(&Control) -> Result<T, Error>,
+) -> Result<T, Error> {
     let _handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
-    let control = Control {
-        cancel: cancel.clone(),
-        on_tile: &|tile, rays| bar.advance(tile, rays),
-        tile_size: setup.tile_size,
-    };
-    let &Shot { camera, settings, region, tone } = shot;
-    let Some(passes) = passes else {
-        return Ok((render(world, &camera, &settings, region, &control)?, Vec::new()));
-    };
-    match render_passes(world, &camera, &settings, region, passes, tone.factor(), &control) {
-        Ok(PassRender { render, layers }) => Ok((render, layers)),
-        Err(error @ RenderError::Layers { .. }) => Err(Error::usage(error.to_string())),
-        Err(error) => Err(error.into()),
-    }
+    let on_tile = |tile: &Tile, rays: &RayCounts| bar.advance(tile, rays);
+    render(&Control { cancel: cancel.clone(), on_tile: &on_tile, tile_size })
 }
 
 fn tell(report: &Report) -> Result<(), Error> {

@@ -16,7 +16,8 @@ use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::{CompileOptions, World};
 use lancer_io::diagnostics::LoadError;
 use lancer_io::image::cutout::{Cutout, write_cutout};
-use lancer_io::image::encode::{Metadata, write_png};
+use lancer_io::image::encode::write;
+use lancer_io::image::{ImageFormat, Metadata};
 use lancer_io::showcase::{framing_camera, hide_ground};
 use lancer_io::{LoadOptions, is_scene_file};
 
@@ -63,8 +64,9 @@ pub(crate) fn run(args: &ThumbnailArgs) -> Result<(), Error> {
         let (Settings { width, height, .. }, camera) = (settings, scene.camera);
         camera.project(width, height).map_err(|error| fault(&error))?;
         let picture = render(&world, &camera, &settings, None, &control)?;
-        let image = scene.tone.expose(&picture.image);
-        write_file(&args.output, &cancel, |out| write_png(&image, &metadata, out))
+        write_file(&args.output, &cancel, |out| {
+            write(ImageFormat::Png, &picture.image, scene.tone, &metadata, out)
+        })
     }
 }
 

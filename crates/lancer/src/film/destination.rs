@@ -3,8 +3,8 @@
 use super::ffmpeg;
 use crate::destination::check_writable;
 use crate::error::Error;
+use lancer_io::image::ImageFormat;
 use lancer_io::image::animation::{AnimationFormat, Film};
-use lancer_io::image::encode::ImageFormat;
 use std::fmt;
 use std::path::{Path, PathBuf};
 

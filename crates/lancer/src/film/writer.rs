@@ -5,10 +5,10 @@ use super::destination::NumberedName;
 use super::ffmpeg::Ffmpeg;
 use crate::destination::{Destination, write_file};
 use crate::error::Error;
-use lancer_core::film::{Image, Tone, to_srgb8};
+use lancer_core::film::{Image, Tone};
 use lancer_core::render::CancelToken;
 use lancer_io::image::animation::{AnimationWriter, Film};
-use lancer_io::image::encode::{ImageFormat, Metadata};
+use lancer_io::image::{ImageFormat, Metadata};
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -80,15 +80,15 @@ impl FilmWriter {
             Kind::Pictures { name, format, written } => {
                 *written += 1;
                 let path = name.numbered(*written);
-                let picture = Destination::File { path, format: *format, is_named: true };
-                picture.write(&self.tone.expose(image), &self.cancel)
+                let picture = Destination::File { path, encoding: (*format).into(), is_named: true };
+                picture.write(image, self.tone, &Metadata::default(), &self.cancel)
             }
             Kind::Animation { path, writer, .. } => {
-                let codes = to_srgb8(&self.tone.expose(image));
+                let codes = self.tone.to_codes8(image);
                 writer.add(&codes).map_err(|error| Error::output(path.display().to_string(), &error))
             }
             Kind::Video { path, ffmpeg } => {
-                let codes = to_srgb8(&self.tone.expose(image));
+                let codes = self.tone.to_codes8(image);
                 ffmpeg
                     .add(codes.as_flattened())
                     .map_err(|error| Error::output(path.display().to_string(), &error))

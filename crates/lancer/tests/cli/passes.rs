@@ -120,6 +120,7 @@ fn passes_that_cannot_be_are_refused_before_anything_is_rendered() {
         unknown.contains("albedo") && unknown.contains("light.0") && unknown.contains("geometric_normal")
     );
     sandbox.fails(2, "render scene.yaml -o a.exr --separate-passes");
+    assert!(sandbox.fails(2, "render scene.yaml -o a.exr --passes all --bits 16").contains("32"));
     let large = sandbox.fails(2, "render scene.yaml -o a.exr --passes all --width 16000 --height 16000");
     assert!(large.contains("MiB"), "{large}");
     std::fs::create_dir(sandbox.path("a.depth.exr")).unwrap();
