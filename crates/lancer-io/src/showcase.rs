@@ -12,7 +12,7 @@ use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
 use lancer_core::geometry::{Bounds, DVec3, Transform, portable};
-use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, Scene, Settings, Shape};
+use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, NodeId, Scene, Settings, Shape};
 use std::f64::consts::PI;
 
 /// From the model toward the camera: from the front, the right and a little above, so that three sides show.
@@ -79,7 +79,7 @@ pub fn scene_of_model(mut model: Model) -> Scene {
         UpAxis::Z => Transform::rotate(DVec3::X, -90.0),
     };
     let bounds = model.bounds_under(upright);
-    let diagonal = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
+    let diagonal = diagonal_of(bounds);
     let is_scene = !model.cameras.is_empty() || !model.lights.is_empty();
     let mut scene = Scene::new(model.name.clone());
     scene.settings = settings(diagonal);
@@ -89,7 +89,7 @@ pub fn scene_of_model(mut model: Model) -> Scene {
             scene.camera = first.camera;
             scene.settings.width = width_of(first, scene.settings);
         }
-        None => scene.camera = framing_camera(bounds, diagonal, scene.settings),
+        None => scene.camera = framing_camera(bounds, &scene.settings),
     }
     scene.cameras = cameras.into_iter().map(|camera| (camera.name, camera.camera)).collect();
     scene.lights = std::mem::take(&mut model.lights);
@@ -107,7 +107,7 @@ pub fn scene_of_model(mut model: Model) -> Scene {
         let ground = scene.add_material(ground_material());
         let height = bounds.min.y - GROUND_GAP * diagonal;
         let at = DVec3::new(bounds.center().x, height, bounds.center().z);
-        let ground = Node::shape("ground", Shape::Plane).with_material(ground);
+        let ground = Node::shape(GROUND, Shape::Plane).with_material(ground);
         scene.add(ground.with_transform(Transform::translate(at)));
     }
     paint(&mut model);
@@ -176,21 +176,68 @@ fn ground_material() -> Material {
     Material { color: Rgb::new(0.52, 0.54, 0.58).into(), ..Material::named("ground") }
 }
 
-/// The camera nearest to the model from which all corners of its box are in the picture.
-///
-/// Across the picture, a corner at x to the right and z toward the camera is inside where
-/// |x - eye_x| <= t (eye_z - z), with t the tangent of half the angle of view. The corners' greatest x + t z
-/// and -x + t z thus bound the eye, and the same holds up the picture.
-fn framing_camera(bounds: Bounds, diagonal: f64, settings: Settings) -> Camera {
+/// The camera nearest to a model, given by its box, from which all of the box is in a picture of these settings.
+pub fn framing_camera(bounds: Bounds, settings: &Settings) -> Camera {
     let center = bounds.center();
+    let corners = bounds.corners().map(|corner| corner - center);
+    frame(center, &corners, diagonal_of(bounds), settings)
+}
+
+/// The camera nearest to a model, given by its box, from which all of the box stays in a picture of these settings
+/// while it turns about the vertical line through its middle. The camera looks at a point of that line.
+pub fn turning_camera(bounds: Bounds, settings: &Settings) -> Camera {
+    let center = bounds.center();
+    let half = 0.5 * (bounds.max - bounds.min);
+    // Corners go round on two circles; these points lie around them, as many to the left as to the right.
+    let front = TOWARD_CAMERA.with_y(0.0).normalize();
+    let side = DVec3::Y.cross(front);
+    let step = PI / f64::from(AROUND_HALF);
+    let radius = half.with_y(0.0).length() / portable::sin_cos(0.5 * step).1;
+    let around = (0..2 * AROUND_HALF).flat_map(|i| {
+        let (sin, cos) = portable::sin_cos(step * f64::from(i));
+        let beside = (front * cos + side * sin) * radius;
+        [beside + DVec3::Y * half.y, beside - DVec3::Y * half.y]
+    });
+    let camera = frame(center, &around.collect::<Vec<_>>(), diagonal_of(bounds), settings);
+    // The target is moved along the line of sight, onto the axis.
+    let sight = camera.target - camera.eye;
+    let (to_axis, sight_across) = ((center - camera.target).with_y(0.0), sight.with_y(0.0));
+    let along = to_axis.dot(sight_across) / sight_across.length_squared();
+    Camera { target: camera.target + sight * along, ..camera }
+}
+
+/// Half of the points around a turning model; more would bring the camera a little nearer.
+const AROUND_HALF: u32 = 16;
+
+/// Takes the ground away that [`scene_of_model`] puts under a model.
+pub fn hide_ground(scene: &mut Scene) {
+    let is_ground = |id: &NodeId| scene.node(*id).name == GROUND;
+    if let Some(ground) = scene.roots().iter().copied().find(is_ground) {
+        scene.node_mut(ground).hidden = true;
+    }
+}
+
+/// What the ground is called.
+const GROUND: &str = "ground";
+
+/// A model without size is taken for one of size 1.
+fn diagonal_of(bounds: Bounds) -> f64 {
+    if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 }
+}
+
+/// The camera nearest to some points, given as seen from `center`, from which all are in the picture.
+///
+/// Across the picture, a point at x to the right and z toward the camera is inside where
+/// |x - eye_x| <= t (eye_z - z), with t the tangent of half the angle of view. The points' greatest x + t z
+/// and -x + t z thus bound the eye, and the same holds up the picture.
+fn frame(center: DVec3, points: &[DVec3], diagonal: f64, settings: &Settings) -> Camera {
     let toward = Camera { eye: TOWARD_CAMERA, target: DVec3::ZERO, fov: FIELD_OF_VIEW, ..Camera::default() };
     let [right, up, backward] = toward.frame().expect("the direction is neither zero nor up");
     let vertical = portable::tan(0.5 * FIELD_OF_VIEW.to_radians()) / MARGIN;
     let horizontal = vertical * f64::from(settings.width) / f64::from(settings.height);
 
-    let corners = bounds.corners().map(|corner| corner - center);
     let reach = |axis: DVec3, tangent: f64| {
-        let reaches = corners.iter().map(|corner| corner.dot(axis) + tangent * corner.dot(backward));
+        let reaches = points.iter().map(|point| point.dot(axis) + tangent * point.dot(backward));
         reaches.fold(f64::NEG_INFINITY, f64::max)
     };
     let fit = |axis: DVec3, tangent: f64| {

@@ -1,11 +1,13 @@
 //! Bare models made into scenes.
 
+use lancer_core::geometry::Bounds;
 use lancer_core::geometry::DVec3;
 use lancer_core::scene::Scene;
+use lancer_core::scene::Settings;
 use lancer_io::limits::Limits;
 use lancer_io::model::{self, Model, ModelOptions};
 use lancer_io::resolver::Resolver;
-use lancer_io::showcase::scene_of_model;
+use lancer_io::showcase::{framing_camera, hide_ground, scene_of_model, turning_camera};
 
 fn obj(text: &str) -> Model {
     let directory = tempfile::TempDir::new().unwrap();
@@ -48,6 +50,52 @@ fn extent_in_picture(scene: &Scene, points: [DVec3; 8]) -> (f64, f64) {
         points.iter().map(across).fold(0.0, f64::max)
     };
     (reach(up, tangent), reach(right, tangent * aspect))
+}
+
+#[test]
+fn a_turning_model_stays_in_the_picture_and_fills_it_from_some_side() {
+    let boxes = [(1.0, 1.0, 1.0), (9.0, 1.0, 0.1), (0.1, 5.0, 0.2), (3.0, 0.0, 3.0), (0.0, 0.0, 2.0)];
+    for (x, y, z) in boxes {
+        let min = DVec3::new(50.0, -20.0, 7.0);
+        let bounds = Bounds { min, max: min + DVec3::new(x, y, z) };
+        for (width, height) in [(800, 600), (300, 900)] {
+            let mut scene = Scene::new("turning");
+            scene.settings = Settings { width, height, ..Settings::default() };
+            let camera = turning_camera(bounds, &scene.settings);
+            let off_axis = (camera.target - bounds.center()).with_y(0.0).length();
+            assert!(off_axis < 1e-12 * 50.0, "the target is {off_axis} off the axis");
+            let mut largest = 0.0_f64;
+            for degrees in 0..360 {
+                scene.camera = camera.orbited(DVec3::Y, f64::from(degrees));
+                let (tall, wide) = extent_in_picture(&scene, bounds.corners());
+                assert!(tall < 1.0 && wide < 1.0, "cut off at {degrees}: {tall} x {wide}");
+                largest = largest.max(tall).max(wide);
+            }
+            assert!(largest > 0.8, "too small: {largest}");
+        }
+    }
+}
+
+#[test]
+fn a_model_is_framed_in_pictures_of_any_shape() {
+    let bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(4.0, 1.0, 2.0) };
+    let mut scene = Scene::new("framed");
+    for (width, height) in [(256, 256), (100, 900), (900, 100)] {
+        scene.settings = Settings { width, height, ..Settings::default() };
+        scene.camera = framing_camera(bounds, &scene.settings);
+        let (tall, wide) = extent_in_picture(&scene, bounds.corners());
+        assert!(tall < 1.0 && wide < 1.0 && tall.max(wide) > 0.85, "{tall} x {wide}");
+    }
+}
+
+#[test]
+fn without_its_ground_only_the_model_is_drawn() {
+    let mut scene = scene_of_model(obj("v -1 0 -1\nv 1 0 1\nv 0 2 0\nf 1 2 3\n"));
+    hide_ground(&mut scene);
+    let hidden = scene.roots().iter().filter(|id| scene.node(**id).hidden).count();
+    assert_eq!((hidden, scene.roots().len()), (1, 2));
+    let world = lancer_core::world::World::compile(&scene, &lancer_core::world::CompileOptions::default());
+    assert_eq!(world.unwrap().statistics().objects, 1);
 }
 
 #[test]

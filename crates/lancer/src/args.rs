@@ -43,6 +43,10 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Render a scene to a file
     Render(Box<RenderArgs>),
+    /// Render a film: an orbit about what the scene shows, or a way past its cameras
+    Turntable(Box<TurntableArgs>),
+    /// Render a small picture of a scene or a model, as file managers show
+    Thumbnail(ThumbnailArgs),
     /// List the built-in scenes
     Scenes(ScenesArgs),
     /// Tell what a scene or a model holds
@@ -82,6 +86,9 @@ pub(crate) struct RenderArgs {
 
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+
+    #[command(flatten)]
+    pub(crate) passes: PassArgs,
 
     #[command(flatten)]
     pub(crate) work: WorkArgs,
@@ -125,6 +132,87 @@ pub(crate) struct EncodingArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) dpi: Option<u16>,
 }
+
+/// `lancer turntable`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct TurntableArgs {
+    /// A built-in scene, a scene file (.yaml, .yml, .json) or a model
+    pub(crate) scene: OsString,
+
+    /// Where the film goes: a .png (animated), .gif, .webp or .mp4 file, or numbered pictures, as in frame_%04d.png
+    ///
+    /// An .mp4 takes ffmpeg. A film in one file is written whole or not at all, and so is each picture.
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) film: FilmArgs,
+
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+
+    /// Print one JSON object about the film on standard output
+    #[arg(long, help_heading = "Messages")]
+    pub(crate) json: bool,
+
+    /// Draw no progress and print no summary; warnings and errors are still told
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
+/// What moves in a film.
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Film")]
+pub(crate) struct FilmArgs {
+    /// Pictures in the film
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=MAX_FRAMES))]
+    pub(crate) frames: u32,
+
+    /// Pictures a second
+    #[arg(long, value_name = "F", default_value_t = 25, value_parser = clap::value_parser!(u16).range(1..=MAX_FPS))]
+    pub(crate) fps: u16,
+
+    /// The axis of the orbit about the camera's target
+    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = ["x", "y", "z"])]
+    pub(crate) axis: String,
+
+    /// Instead of the orbit, a smooth way past these cameras, as in front,side,front; `main` is the scene's own
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["axis", "camera"])]
+    pub(crate) path: Vec<String>,
+}
+
+/// More would be a film of an hour.
+const MAX_FRAMES: i64 = 100_000;
+/// Faster than any display.
+const MAX_FPS: i64 = 240;
+
+/// `lancer thumbnail`.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct ThumbnailArgs {
+    /// A built-in scene, a scene file or a model
+    pub(crate) scene: OsString,
+
+    /// The file to write, a PNG whatever its name
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+
+    /// The longer side in pixels
+    #[arg(short, long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=MAX_THUMBNAIL))]
+    pub(crate) size: u32,
+
+    #[command(flatten)]
+    pub(crate) access: AccessArgs,
+}
+
+/// What is larger is no thumbnail.
+const MAX_THUMBNAIL: i64 = 4096;
 
 /// What decides the pixels.
 #[derive(Debug, ClapArgs)]
@@ -182,6 +270,23 @@ pub(crate) struct PictureArgs {
     /// linear values without sRGB encoding. Formats of radiance (.hdr, .pfm, .exr, 32-bit .tif) take none
     #[arg(long, value_name = "CURVE", value_parser = tone_parser())]
     pub(crate) tone: Option<ToneCurve>,
+}
+
+/// What is written beside the picture.
+#[derive(Debug, Default, ClapArgs)]
+#[command(next_help_heading = "Passes")]
+pub(crate) struct PassArgs {
+    /// Write these layers beside the picture, into the same .exr file: `all`, or names parted by commas
+    ///
+    /// `terms` (ambient, diffuse, specular, reflection, transmission, background) and `lights` (all_ambient,
+    /// all_background, one light.NAME for each light) each add up to the picture, exactly. The others: ao, depth,
+    /// distance, position, normal, geometric_normal, uv, object_id, material_id, cost.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) passes: Vec<String>,
+
+    /// Write each layer into a file of its own, as picture.NAME.exr
+    #[arg(long, requires = "passes")]
+    pub(crate) separate_passes: bool,
 }
 
 /// What decides how long it takes, and nothing in the pixels.

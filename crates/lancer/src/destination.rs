@@ -107,7 +107,7 @@ impl Destination {
                 write_to_stdout(|out| encode::write(*encoding, image, tone, metadata, out))
             }
             Self::File { path, encoding, .. } => {
-                write_to_file(path, cancel, |out| encode::write(*encoding, image, tone, metadata, out))
+                write_file(path, cancel, |out| encode::write(*encoding, image, tone, metadata, out))
             }
         };
         // Whatever the error then says, it is not the file's fault.
@@ -134,7 +134,11 @@ fn write_to_stdout(encode: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Res
     })
 }
 
-fn write_to_file(
+/// Writes a file by `encode`, whole or not at all, unless the user asks to stop before it is written.
+///
+/// # Errors
+/// It cannot be written, or the user asked to stop.
+pub(crate) fn write_file(
     path: &Path,
     cancel: &CancelToken,
     encode: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -147,7 +151,11 @@ fn write_to_file(
         encode(&mut out)?;
         out.flush()
     });
-    written.map_err(|error| Error::output(path.display().to_string(), &error.source))
+    // Once the user asked to stop, it is not the file's fault.
+    written.map_err(|error| match cancel.is_cancelled() {
+        true => Error::Interrupted,
+        false => Error::output(path.display().to_string(), &error.source),
+    })
 }
 
 /// A writer that fails once the user asked to stop, so that what was written so far is dropped.
@@ -179,7 +187,7 @@ impl<W: Write> Write for UntilCancelled<'_, W> {
 ///
 /// Permissions do not tell: read-only file systems, quotas and access lists have their say. So a nameless file is
 /// made in the directory, which the system takes away again whatever happens.
-fn check_writable(path: &Path) -> io::Result<()> {
+pub(crate) fn check_writable(path: &Path) -> io::Result<()> {
     // What is written is what a symbolic link leads to.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     match fs::metadata(path) {

@@ -6,6 +6,7 @@
 use crate::args::{PictureArgs, ReadingArgs, RenderArgs, WorkArgs};
 use crate::destination::Destination;
 use crate::error::Error;
+use crate::passes::PassFiles;
 use crate::source::Source;
 use lancer_core::accel::{Accelerator, KdSettings};
 use lancer_core::camera::Camera;
@@ -17,20 +18,27 @@ use lancer_io::LoadOptions;
 use lancer_io::image::Metadata;
 use lancer_io::limits::Limits;
 use lancer_io::provenance::{Provenance, SceneHash, record_overrides};
+use std::ffi::OsStr;
 use std::num::NonZero;
 
 /// What to render, how, and where to.
 pub(crate) struct Job {
+    pub(crate) setup: Setup,
+    pub(crate) destination: Destination,
+    pub(crate) passes: Option<PassFiles>,
+    pub(crate) json: bool,
+    pub(crate) quiet: bool,
+    dpi: Option<u16>,
+}
+
+/// What to render and how.
+pub(crate) struct Setup {
     pub(crate) source: Source,
     pub(crate) load: LoadOptions,
     pub(crate) compile: CompileOptions,
     pub(crate) threads: usize,
     pub(crate) tile_size: u32,
-    pub(crate) destination: Destination,
-    pub(crate) json: bool,
-    pub(crate) quiet: bool,
     picture: PictureArgs,
-    dpi: Option<u16>,
 }
 
 /// What to render of a scene that is known.
@@ -49,27 +57,76 @@ impl Job {
     /// They contradict one another; a setting is out of its range; there is no such scene; the output cannot be
     /// written.
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Error> {
-        let RenderArgs { scene, output, picture, work, reading, json, quiet, encoding } = args;
-        // The values that are not given are the defaults, which no given one can make illegal.
-        settings_for(&picture, Settings::default()).validate().map_err(usage)?;
-        let source = Source::find(scene.as_deref())?;
-        let destination = Destination::find(output.as_deref(), &encoding, &source)?;
+        let RenderArgs { scene, output, picture, passes, work, reading, json, quiet, encoding } = args;
+        let setup = Setup::new(scene.as_deref(), picture, &work, reading)?;
+        let destination = Destination::find(output.as_deref(), &encoding, &setup.source)?;
         if json && destination.is_stdout() {
             return Err(Error::usage("--json and the picture cannot both go to standard output"));
         }
+        let passes = PassFiles::new(passes, &destination)?;
         destination.check()?;
+        Ok(Self { setup, destination, passes, json, quiet, dpi: encoding.dpi })
+    }
+
+    /// What to render of `scene`.
+    ///
+    /// # Errors
+    /// As [`Setup::shot`]; or the format cannot hold the picture.
+    pub(crate) fn shot(&self, scene: &Scene) -> Result<Shot, Error> {
+        let shot = self.setup.shot(scene)?;
+        let (width, height) = shot.size();
+        self.destination.encoding().check_size(width, height).map_err(usage)?;
+        Ok(shot)
+    }
+
+    /// What the file says of the picture beside its pixels.
+    pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
+        let (set, unrecorded) = record_overrides(&self.setup.load.overrides);
+        let record = Provenance {
+            lancer: Provenance::VERSION.to_owned(),
+            scene: self.setup.source.record(),
+            name: scene.name.clone(),
+            hash: SceneHash::of(scene, &shot.camera),
+            camera: self.setup.picture.camera.clone(),
+            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
+            render: shot.settings,
+            tone: shot.tone,
+            set,
+            unrecorded,
+            encoding: self.destination.encoding(),
+            dpi: self.dpi,
+        };
+        record.metadata()
+    }
+}
+
+impl Setup {
+    /// What the words mean.
+    ///
+    /// # Errors
+    /// A setting is out of its range; there is no such scene.
+    pub(crate) fn new(
+        scene: Option<&OsStr>,
+        picture: PictureArgs,
+        work: &WorkArgs,
+        reading: ReadingArgs,
+    ) -> Result<Self, Error> {
+        // The values that are not given are the defaults, which no given one can make illegal.
+        settings_for(&picture, Settings::default()).validate().map_err(usage)?;
         Ok(Self {
-            source,
+            source: Source::find(scene)?,
             load: load_options(reading),
-            compile: compile_options(&work),
+            compile: compile_options(work),
             threads: work.threads.map_or_else(all_cores, |threads| threads as usize),
             tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
-            destination,
-            json,
-            quiet,
             picture,
-            dpi: encoding.dpi,
         })
+    }
+
+    /// Whether the scene is a bare model that nothing was changed of: then it is up to the program how it is shown.
+    pub(crate) fn is_bare_model(&self) -> bool {
+        let is_model = matches!(&self.source, Source::File(path) if !lancer_io::is_scene_file(path));
+        is_model && self.load.overrides.is_empty()
     }
 
     /// What to render of `scene`.
@@ -103,47 +160,37 @@ impl Job {
                 self.tile_size
             )));
         }
-        let (width, height) = shot.size();
-        self.destination.encoding().check_size(width, height).map_err(usage)?;
         Ok(shot)
     }
 
-    /// What the file says of the picture beside its pixels.
-    pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
-        let (set, unrecorded) = record_overrides(&self.load.overrides);
-        let record = Provenance {
-            lancer: Provenance::VERSION.to_owned(),
-            scene: self.source.record(),
-            name: scene.name.clone(),
-            hash: SceneHash::of(scene, &shot.camera),
-            camera: self.picture.camera.clone(),
-            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
-            render: shot.settings,
-            tone: shot.tone,
-            set,
-            unrecorded,
-            encoding: self.destination.encoding(),
-            dpi: self.dpi,
-        };
-        record.metadata()
-    }
-
     fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Camera, Error> {
-        let name = self.picture.camera.as_deref();
-        scene.camera_named(name).ok_or_else(|| {
-            let message = format!("the scene has no camera `{}`", name.unwrap_or_default());
-            let names = scene.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
-            let hint = match names.as_slice() {
-                [] => "leave out --camera: the scene has one camera, without a name".into(),
-                names => format!("its cameras are {}", names.join(", ")),
-            };
-            Error::usage_with_hint(message, hint)
-        })
+        camera_named(scene, self.picture.camera.as_deref(), "--camera")
     }
 
-    fn scene_fault(&self, error: impl std::error::Error) -> Error {
+    /// A fault of the scene as a whole.
+    pub(crate) fn scene_fault(&self, error: impl std::error::Error) -> Error {
         Error::Scene(self.source.diagnostic(error).into())
     }
+}
+
+/// The scene's camera of a name that a flag gives, or without a name its main one.
+///
+/// # Errors
+/// There is none.
+pub(crate) fn camera_named<'a>(
+    scene: &'a Scene,
+    name: Option<&str>,
+    flag: &str,
+) -> Result<&'a Camera, Error> {
+    scene.camera_named(name).ok_or_else(|| {
+        let message = format!("the scene has no camera `{}`", name.unwrap_or_default());
+        let names = scene.cameras.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>();
+        let hint = match names.as_slice() {
+            [] => format!("leave out {flag}: the scene has one camera, without a name"),
+            names => format!("its cameras are {}", names.join(", ")),
+        };
+        Error::usage_with_hint(message, hint)
+    })
 }
 
 impl Shot {

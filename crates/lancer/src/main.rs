@@ -11,9 +11,11 @@ mod destination;
 #[cfg(test)]
 mod documents;
 mod error;
+mod film;
 mod interrupt;
 mod job;
 mod json;
+mod passes;
 mod process;
 mod progress;
 mod report;

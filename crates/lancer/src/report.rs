@@ -3,6 +3,7 @@
 //! The names of the JSON's members are part of the contract with scripts: members may be added, and none renamed.
 
 use crate::job::{Job, Shot};
+use crate::passes::LayersJson;
 use crate::progress::{rays_per_second, short_count};
 use crate::{json, process};
 use lancer_core::Rgb;
@@ -21,6 +22,7 @@ pub(crate) struct Report<'a> {
     pub(crate) world: WorldStatistics,
     pub(crate) rays: RayCounts,
     pub(crate) stages: Stages,
+    pub(crate) layers: Option<LayersJson>,
     pub(crate) warnings: &'a [Diagnostic],
 }
 
@@ -38,7 +40,8 @@ pub(crate) struct Stages {
 }
 
 impl Stages {
-    fn total(&self) -> Duration {
+    /// All of them.
+    pub(crate) fn total(&self) -> Duration {
         self.load + self.build + self.render + self.write
     }
 }
@@ -60,17 +63,18 @@ impl Report<'_> {
     pub(crate) fn json(&self) -> String {
         let (width, height) = self.shot.size();
         json::object(&RenderJson {
-            scene: self.job.source.to_string(),
+            scene: self.job.setup.source.to_string(),
             image: ImageJson { width, height },
             samples: self.shot.settings.samples,
             depth: self.shot.settings.depth,
-            threads: self.job.threads,
-            accelerator: self.job.compile.accelerator.name(),
+            threads: self.job.setup.threads,
+            accelerator: self.job.setup.compile.accelerator.name(),
             rays: self.rays.into(),
             seconds: self.stages.into(),
             world: self.world.into(),
             peak_memory_bytes: process::peak_memory_bytes(),
             output: self.job.destination.to_string(),
+            passes: self.layers.as_ref(),
             warnings: self.warnings.iter().map(json::DiagnosticJson::from).collect(),
         })
     }
@@ -86,7 +90,8 @@ pub(crate) fn warnings_about(picture: &Render, world: &World, shot: &Shot) -> Ve
     warnings
 }
 
-fn cut_short(rays: &RayCounts) -> Vec<String> {
+/// What to warn of after any rays.
+pub(crate) fn cut_short(rays: &RayCounts) -> Vec<String> {
     let mut warnings = Vec::new();
     if rays.truncated > 0 {
         let count = camera_rays(rays.truncated);
@@ -128,18 +133,21 @@ struct RenderJson<'a> {
     world: WorldJson,
     peak_memory_bytes: Option<u64>,
     output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passes: Option<&'a LayersJson>,
     warnings: Vec<json::DiagnosticJson<'a>>,
 }
 
 /// The pixels that were written: those of the region, where one was asked for.
 #[derive(Serialize)]
-struct ImageJson {
-    width: u32,
-    height: u32,
+pub(crate) struct ImageJson {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
 }
 
+/// Rays by kind.
 #[derive(Serialize)]
-struct RaysJson {
+pub(crate) struct RaysJson {
     primary: u64,
     shadow: u64,
     ao: u64,
@@ -158,8 +166,9 @@ impl From<RayCounts> for RaysJson {
     }
 }
 
+/// Seconds by stage.
 #[derive(Serialize)]
-struct SecondsJson {
+pub(crate) struct SecondsJson {
     load: f64,
     build: f64,
     render: f64,

@@ -3,11 +3,13 @@
 mod aabb;
 pub mod bvh;
 pub mod kd_tree;
+mod tally;
 pub(crate) mod triangles;
 
 pub use aabb::Aabb;
 pub use bvh::{Bvh, Quality};
 pub use kd_tree::{BuildError, KdSettings, KdTree};
+pub use tally::{Tally, Uncounted, Visits};
 
 /// Which structure finds hits. It changes the time that a picture takes, and nothing in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

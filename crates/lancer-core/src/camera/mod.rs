@@ -2,6 +2,10 @@
 //!
 //! The camera looks along -Z of its own frame with +Y up, as in glTF; pixel (0, 0) is the top left one.
 
+mod motion;
+
+pub use motion::CameraPath;
+
 use crate::geometry::{DVec3, Ray, portable};
 
 /// A perspective camera as its author says it. Lengths in world units.

@@ -4,6 +4,7 @@
 //! is 1. Half of the directions have no weight and are not traced.
 
 use super::RayCounts;
+use crate::accel::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
@@ -32,6 +33,18 @@ impl AmbientOcclusionSampler {
 
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
     pub fn factor(&self, world: &World, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
+        self.factor_tallied(world, at, key, counts, &Uncounted)
+    }
+
+    /// As [`AmbientOcclusionSampler::factor`], and tells what the search looks at.
+    pub(super) fn factor_tallied(
+        &self,
+        world: &World,
+        at: &Intersection,
+        key: Key,
+        counts: &mut RayCounts,
+        tally: &impl Tally,
+    ) -> f64 {
         if self.lattice.samples() == 0 {
             return 1.0;
         }
@@ -41,7 +54,7 @@ impl AmbientOcclusionSampler {
                 break;
             }
             counts.ao += fan.count as u64;
-            let mut visible = fan.all() & !world.occluded_fan(at, &fan, self.distance);
+            let mut visible = fan.all() & !world.occluded_fan_tallied(at, &fan, self.distance, tally);
             while visible != 0 {
                 sum += fan.elevation(visible.trailing_zeros() as usize);
                 visible &= visible - 1;

@@ -7,6 +7,7 @@
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
 use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, SpawnEvent};
+use crate::accel::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::color::Rgb;
 use crate::geometry::{DVec3, Ray};
@@ -85,7 +86,23 @@ impl<'w> Whitted<'w> {
         counts: &mut RayCounts,
         listener: &mut L,
     ) -> Rgb {
-        let mut walk = Walk { integrator: self, pending: &mut scratch.pending, counts, listener, next_id: 1 };
+        self.radiance_tallied(ray, media, key, scratch, counts, listener, &Uncounted)
+    }
+
+    /// As [`Whitted::radiance`], and tells what the searches for all of its rays look at.
+    #[expect(clippy::too_many_arguments, reason = "the tally is one more who listens")]
+    pub fn radiance_tallied<L: Listener, T: Tally>(
+        &self,
+        ray: Ray,
+        media: &Media,
+        key: Key,
+        scratch: &mut Scratch,
+        counts: &mut RayCounts,
+        listener: &mut L,
+        tally: &T,
+    ) -> Rgb {
+        let pending = &mut scratch.pending;
+        let mut walk = Walk { integrator: self, pending, counts, listener, tally, next_id: 1 };
         let first = PendingRay {
             ray,
             kind: RayKind::Primary,
@@ -110,18 +127,24 @@ impl<'w> Whitted<'w> {
     pub fn occlusion(&self, ray: &Ray, key: Key, counts: &mut RayCounts) -> f64 {
         counts.primary += 1;
         self.world.intersect(ray).map_or(1.0, |hit| {
-            let (at, _) = self.world.seen_surface(ray, &hit);
-            self.occlusion.factor(self.world, &at, key, counts)
+            let (at, _) = self.world.seen_surface(ray, &hit, &Uncounted);
+            self.occlusion_at(&at, key, counts)
         })
+    }
+
+    /// c_a at a surface, by the key of the ray that met it.
+    pub fn occlusion_at(&self, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
+        self.occlusion.factor(self.world, at, key, counts)
     }
 }
 
 /// One camera ray's tree on its way.
-struct Walk<'a, 'w, L> {
+struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
     pending: &'a mut VecDeque<PendingRay>,
     counts: &'a mut RayCounts,
     listener: &'a mut L,
+    tally: &'a T,
     next_id: u32,
 }
 
@@ -135,7 +158,7 @@ struct Arrival<'a> {
     point: ShadingPoint<'a>,
 }
 
-impl<L: Listener> Walk<'_, '_, L> {
+impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn run(&mut self, first: PendingRay) -> Rgb {
         self.pending.clear();
         let mut radiance = Rgb::BLACK;
@@ -165,11 +188,11 @@ impl<L: Listener> Walk<'_, '_, L> {
     /// The local terms of one ray; what it reflects and refracts is queued.
     fn trace(&mut self, id: RayId, pending: &PendingRay) -> Rgb {
         let world = self.integrator.world;
-        let Some(hit) = world.intersect(&pending.ray) else {
+        let Some(hit) = world.intersect_tallied(&pending.ray, self.tally) else {
             self.listener.background(world.background());
             return world.background();
         };
-        let (at, touching) = world.seen_surface(&pending.ray, &hit);
+        let (at, touching) = world.seen_surface(&pending.ray, &hit, self.tally);
         let material = world.material(at.material);
         let point = ShadingPoint {
             position: at.point,
@@ -200,7 +223,8 @@ impl<L: Listener> Walk<'_, '_, L> {
             return Rgb::BLACK;
         }
         let (world, key) = (self.integrator.world, arrival.pending.key);
-        term.occlusion = self.integrator.occlusion.factor(world, &arrival.at, key, self.counts);
+        let sampler = &self.integrator.occlusion;
+        term.occlusion = sampler.factor_tallied(world, &arrival.at, key, self.counts, self.tally);
         self.listener.ambient(&term);
         term.radiance()
     }
@@ -223,7 +247,7 @@ impl<L: Listener> Walk<'_, '_, L> {
     /// Whether nothing stands between a surface and a light.
     fn reaches(&mut self, at: &Intersection, light: &Light) -> bool {
         self.counts.shadow += 1;
-        !self.integrator.world.occluded(&at.segment_to(light.position))
+        !self.integrator.world.occluded_tallied(&at.segment_to(light.position), self.tally)
     }
 
     /// Queues L_r and L_t where they are wanted and their coefficients are not zero.

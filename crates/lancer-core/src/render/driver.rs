@@ -64,6 +64,15 @@ pub enum RenderError {
         /// Rows of the image.
         height: u32,
     },
+    /// The layers would take too much memory.
+    #[error(
+        "the layers of the passes would take {} MiB, more than {}; ask for fewer of them, or render the picture by regions",
+        .bytes >> 20, super::passes::MAX_LAYER_BYTES >> 20
+    )]
+    Layers {
+        /// What they would take.
+        bytes: u64,
+    },
     /// It was cancelled.
     #[error("the render was cancelled")]
     Cancelled,
@@ -98,7 +107,7 @@ pub fn render(
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
     let media = Media::around(world, camera.eye);
-    frame.render(control, |ray, key, scratch, counts| {
+    frame.render(control, &|ray: Ray, key: Key, scratch: &mut Scratch, counts: &mut RayCounts| {
         integrator.radiance(ray, &media, key, scratch, counts, &mut Silent)
     })
 }
@@ -117,19 +126,25 @@ pub fn render_occlusion(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    frame.render(control, |ray, key, _, counts| Rgb::grey(integrator.occlusion(&ray, key, counts)))
+    frame.render(control, &|ray: Ray, key: Key, _: &mut Scratch, counts: &mut RayCounts| {
+        Rgb::grey(integrator.occlusion(&ray, key, counts))
+    })
 }
 
 /// What is to be rendered: checked, before anything is allocated.
-struct Frame {
-    projection: Projection,
+pub(super) struct Frame {
+    pub(super) projection: Projection,
     /// Subpixels along a pixel's side.
-    samples: u32,
-    region: Region,
+    pub(super) samples: u32,
+    pub(super) region: Region,
 }
 
 impl Frame {
-    fn new(camera: &Camera, settings: &Settings, region: Option<Region>) -> Result<Self, RenderError> {
+    pub(super) fn new(
+        camera: &Camera,
+        settings: &Settings,
+        region: Option<Region>,
+    ) -> Result<Self, RenderError> {
         settings.validate()?;
         let &Settings { width, height, samples, .. } = settings;
         let region = region.unwrap_or(Region { x: 0, y: 0, width, height });
@@ -139,10 +154,10 @@ impl Frame {
         Ok(Self { projection: camera.project(width, height)?, samples, region })
     }
 
-    /// Renders what `trace` finds for each camera ray.
-    fn render(self, control: &Control, trace: impl Trace) -> Result<Render, RenderError> {
+    /// Renders what `painter` finds for each camera ray.
+    pub(super) fn render(self, control: &Control, painter: &impl Painter) -> Result<Render, RenderError> {
         let film = Mutex::new(Image::black(self.region.width, self.region.height));
-        let job = Job { frame: self, trace, control, film, panic: OnceLock::new() };
+        let job = Job { frame: self, painter, control, film, panic: OnceLock::new() };
         // Counts are whole numbers, so their sum does not depend on the order of work.
         let rays = tiles_of(&job.frame.region, control.tile_size.max(1))
             .into_par_iter()
@@ -162,10 +177,35 @@ impl Frame {
     }
 }
 
-/// What a camera ray yields; something unfinished once the render is cancelled.
-trait Trace: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync {}
+/// What finds the colours of camera rays, and may keep more of them than that.
+pub(super) trait Painter: Sync {
+    /// What a thread needs, and what it keeps, for the tile in hand.
+    type Tile;
 
-impl<T: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync> Trace for T {}
+    /// Before the first ray of a tile.
+    fn begin_tile(&self) -> Self::Tile;
+
+    /// What a camera ray yields; something unfinished once the render is cancelled.
+    fn trace(&self, ray: Ray, key: Key, tile: &mut Self::Tile, counts: &mut RayCounts) -> Rgb;
+
+    /// All rays of the pixel at a column and a row of the image were traced. Pixels of a tile come in reading order.
+    fn end_pixel(&self, _x: u32, _y: u32, _mean: [f32; 3], _tile: &mut Self::Tile) {}
+
+    /// All pixels of a tile, at its place in the region, are done.
+    fn end_tile(&self, _area: &Region, _tile: Self::Tile) {}
+}
+
+impl<F: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync> Painter for F {
+    type Tile = Scratch;
+
+    fn begin_tile(&self) -> Scratch {
+        Scratch::default()
+    }
+
+    fn trace(&self, ray: Ray, key: Key, scratch: &mut Scratch, counts: &mut RayCounts) -> Rgb {
+        self(ray, key, scratch, counts)
+    }
+}
 
 /// The tiles of a region in reading order, in coordinates of the region.
 fn tiles_of(region: &Region, size: u32) -> Vec<Region> {
@@ -177,27 +217,27 @@ fn tiles_of(region: &Region, size: u32) -> Vec<Region> {
         .collect()
 }
 
-struct Job<'a, T> {
+struct Job<'a, P> {
     frame: Frame,
-    trace: T,
+    painter: &'a P,
     control: &'a Control<'a>,
     film: Mutex<Image>,
     /// The first panic; it stops all threads.
     panic: OnceLock<RenderError>,
 }
 
-impl<T: Trace> Job<'_, T> {
+impl<P: Painter> Job<'_, P> {
     /// Traces a tile into the film. Returns the rays that it took; none where the render was cancelled or a
     /// thread panicked.
     fn tile(&self, area: Region) -> Option<RayCounts> {
         let mut counts = RayCounts::default();
-        let mut scratch = Scratch::default();
+        let mut kept = self.painter.begin_tile();
         let mut pixels = Vec::with_capacity(area.width as usize * area.height as usize);
         for y in area.y..area.y + area.height {
             for x in area.x..area.x + area.width {
                 let (x, y) = (x + self.frame.region.x, y + self.frame.region.y);
-                // After a panic the scratch and the counts are dropped with the tile.
-                let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut scratch, &mut counts)));
+                // After a panic what is kept and the counts are dropped with the tile.
+                let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut kept, &mut counts)));
                 match pixel {
                     Ok(pixel) => pixels.push(pixel?),
                     Err(panic) => {
@@ -213,24 +253,27 @@ impl<T: Trace> Job<'_, T> {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
         film.put(tile.x, tile.y, tile.width, &tile.pixels);
         drop(film);
+        self.painter.end_tile(&area, kept);
         (self.control.on_tile)(&tile, &counts);
         Some(counts)
     }
 
     /// The mean of the pixel's subpixels; none where the render is to stop.
-    fn pixel(&self, x: u32, y: u32, scratch: &mut Scratch, counts: &mut RayCounts) -> Option<[f32; 3]> {
+    fn pixel(&self, x: u32, y: u32, kept: &mut P::Tile, counts: &mut RayCounts) -> Option<[f32; 3]> {
         let Frame { projection, samples, .. } = &self.frame;
         let mut sum = Rgb::BLACK;
         for (subpixel, (dx, dy)) in subpixel_centers(*samples).enumerate() {
             let ray = projection.ray(f64::from(x) + dx, f64::from(y) + dy);
-            sum += (self.trace)(ray, Key::camera(x, y, subpixel as u32), scratch, counts);
+            sum += self.painter.trace(ray, Key::camera(x, y, subpixel as u32), kept, counts);
             // Afterwards: what was cancelled on its way is unfinished.
             if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
                 return None;
             }
         }
         let mean = sum * (1.0 / f64::from(samples * samples));
-        Some(mean.to_array().map(|channel| channel as f32))
+        let mean = mean.to_array().map(|channel| channel as f32);
+        self.painter.end_pixel(x, y, mean, kept);
+        Some(mean)
     }
 }
 

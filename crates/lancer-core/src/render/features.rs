@@ -4,6 +4,7 @@
 //! pixel. It knows no light.
 
 use super::RenderError;
+use crate::accel::Uncounted;
 use crate::camera::{Camera, CameraError};
 use crate::cancel::CancelToken;
 use crate::geometry::{DVec2, DVec3, Ray};
@@ -62,9 +63,9 @@ pub fn feature_at(
 }
 
 /// The surface that a camera ray shows.
-fn seen(world: &World, ray: &Ray) -> Option<Intersection> {
+pub(super) fn seen(world: &World, ray: &Ray) -> Option<Intersection> {
     let hit = world.intersect(ray)?;
-    Some(world.seen_surface(ray, &hit).0)
+    Some(world.seen_surface(ray, &hit, &Uncounted).0)
 }
 
 /// What is seen at the centre of each pixel. It outlives the world that it was found in.

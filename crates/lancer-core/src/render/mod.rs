@@ -6,6 +6,7 @@
 mod control;
 mod driver;
 mod features;
+pub mod passes;
 #[cfg(test)]
 mod tests;
 

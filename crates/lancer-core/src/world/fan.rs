@@ -4,6 +4,7 @@ use super::geometry::{Geometry, TriangleIndex};
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Receiver, visit_fan};
+use crate::accel::{Tally, Uncounted};
 use crate::geometry::{DMat3, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
 
@@ -20,6 +21,17 @@ impl World {
     /// The answer for each direction is that of [`World::occluded`] for `at.spawn(direction)`; it is only found
     /// faster.
     pub fn occluded_fan(&self, at: &Intersection, fan: &DirectionFan, reach: f64) -> u64 {
+        self.occluded_fan_tallied(at, fan, reach, &Uncounted)
+    }
+
+    /// As [`World::occluded_fan`], and tells what it looks at.
+    pub(crate) fn occluded_fan_tallied(
+        &self,
+        at: &Intersection,
+        fan: &DirectionFan,
+        reach: f64,
+        tally: &impl Tally,
+    ) -> u64 {
         let wanted = fan.all();
         let mut occluded = 0;
         let mut together = 0;
@@ -42,22 +54,22 @@ impl World {
         }
         for i in bits(wanted & !together) {
             let ray = Ray { t_max: reach, ..at.spawn(fan.direction(i)) };
-            occluded |= u64::from(self.occluded(&ray)) << i;
+            occluded |= u64::from(self.occluded_tallied(&ray, tally)) << i;
         }
         if let Some(first) = bits(together).next() {
             let rays = FanRays { origin: at.spawn(fan.direction(first)).origin, fan, reach, at };
             let mut open = together;
             for &id in &self.unbounded {
-                open &= !self.occluded_by(id, &rays, open);
+                open &= !self.occluded_by(id, &rays, open, tally);
             }
-            open &= !self.occluded_by_bounded(&rays, open);
+            open &= !self.occluded_by_bounded(&rays, open, tally);
             occluded |= together & !open;
         }
         occluded
     }
 
     /// Which of the rays `wanted` an object stops.
-    fn occluded_by(&self, id: ObjectId, rays: &FanRays, wanted: u64) -> u64 {
+    fn occluded_by(&self, id: ObjectId, rays: &FanRays, wanted: u64, tally: &impl Tally) -> u64 {
         if wanted == 0 {
             return 0;
         }
@@ -70,20 +82,20 @@ impl World {
             let decide = |i: usize, triangle: &[[f32; 3]; 3]| {
                 Canonical::new(&object.placement.ray_to_object(&rays.ray(i))).hits(triangle)
             };
-            if let Some(occluded) = tree.occluded_fan(&receiver, rays.fan, wanted, decide) {
+            if let Some(occluded) = tree.occluded_fan(&receiver, rays.fan, wanted, tally, decide) {
                 return occluded;
             }
         }
         let mut occluded = 0;
         for i in bits(wanted) {
             let ray = object.placement.ray_to_object(&rays.ray(i));
-            occluded |= u64::from(object.geometry.occluded(&ray, &self.meshes)) << i;
+            occluded |= u64::from(object.geometry.occluded(&ray, &self.meshes, tally)) << i;
         }
         occluded
     }
 
     /// Which of the rays `wanted` a bounded object stops.
-    fn occluded_by_bounded(&self, rays: &FanRays, wanted: u64) -> u64 {
+    fn occluded_by_bounded(&self, rays: &FanRays, wanted: u64, tally: &impl Tally) -> u64 {
         let mut open = wanted;
         let mut found = false;
         if let ObjectIndex::Bvh { tree, level } = &self.index
@@ -92,17 +104,17 @@ impl World {
             let visit = |leaf: Child, mask: u64| {
                 let mut hit = 0;
                 for &place in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
-                    hit |= self.occluded_by(self.bounded[place as usize], rays, mask & !hit);
+                    hit |= self.occluded_by(self.bounded[place as usize], rays, mask & !hit, tally);
                 }
                 open &= !hit;
                 hit
             };
             let receiver = rays.in_world();
-            found = visit_fan(*level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, visit);
+            found = visit_fan(*level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, tally, visit);
         }
         if !found {
             for &id in &self.bounded {
-                open &= !self.occluded_by(id, rays, open);
+                open &= !self.occluded_by(id, rays, open, tally);
             }
         }
         wanted & !open

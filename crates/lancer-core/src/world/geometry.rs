@@ -1,7 +1,7 @@
 //! What an object is made of, in its canonical space.
 
 use crate::accel::triangles::TriangleTree;
-use crate::accel::{Aabb, KdTree, Primitives};
+use crate::accel::{Aabb, KdTree, Primitives, Tally};
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec3, Ray};
 use crate::mesh::Mesh;
@@ -63,23 +63,28 @@ impl Geometry {
         }
     }
 
-    pub(super) fn intersect(self, ray: &Ray, meshes: &[Arc<PreparedMesh>]) -> Option<Hit> {
+    pub(super) fn intersect(
+        self,
+        ray: &Ray,
+        meshes: &[Arc<PreparedMesh>],
+        tally: &impl Tally,
+    ) -> Option<Hit> {
         match self {
             Self::Sphere => sphere::intersect(ray),
             Self::Cube => cube::intersect(ray),
             Self::Cylinder { capped } => cylinder::intersect(ray, capped),
             Self::Plane => plane::intersect(ray),
-            Self::Mesh(index) => meshes[index as usize].intersect(ray),
+            Self::Mesh(index) => meshes[index as usize].intersect(ray, tally),
         }
     }
 
-    pub(super) fn occluded(self, ray: &Ray, meshes: &[Arc<PreparedMesh>]) -> bool {
+    pub(super) fn occluded(self, ray: &Ray, meshes: &[Arc<PreparedMesh>], tally: &impl Tally) -> bool {
         match self {
             Self::Sphere => sphere::occluded(ray),
             Self::Cube => cube::occluded(ray),
             Self::Cylinder { capped } => cylinder::occluded(ray, capped),
             Self::Plane => plane::occluded(ray),
-            Self::Mesh(index) => meshes[index as usize].occluded(ray),
+            Self::Mesh(index) => meshes[index as usize].occluded(ray, tally),
         }
     }
 
@@ -96,21 +101,27 @@ impl Geometry {
 
 impl PreparedMesh {
     /// The nearest hit; of several at the same t, the lowest triangle's.
-    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+    fn intersect(&self, ray: &Ray, tally: &impl Tally) -> Option<Hit> {
         match &self.index {
-            TriangleIndex::Bvh(tree) => tree.intersect(ray),
+            TriangleIndex::Bvh(tree) => tree.intersect(ray, tally),
             TriangleIndex::Kd(tree) => {
                 let mut nearest = Nearest::new(ray);
-                tree.visit_leaves(ray, |candidates| {
-                    for &primitive in candidates {
-                        nearest.consider(primitive, &self.mesh.vertices(primitive));
-                    }
-                    nearest.t()
-                });
+                tree.visit_steps_and_leaves(
+                    ray,
+                    || tally.node(),
+                    |candidates| {
+                        tally.triangles(candidates.len());
+                        for &primitive in candidates {
+                            nearest.consider(primitive, &self.mesh.vertices(primitive));
+                        }
+                        nearest.t()
+                    },
+                );
                 nearest.found()
             }
             TriangleIndex::None => {
                 let mut nearest = Nearest::new(ray);
+                tally.triangles(self.mesh.triangle_count());
                 for primitive in 0..self.mesh.triangle_count() as u32 {
                     nearest.consider(primitive, &self.mesh.vertices(primitive));
                 }
@@ -119,21 +130,27 @@ impl PreparedMesh {
         }
     }
 
-    fn occluded(&self, ray: &Ray) -> bool {
+    fn occluded(&self, ray: &Ray, tally: &impl Tally) -> bool {
         let mut canonical = Canonical::new(ray);
+        let mut hits = |primitive: u32| {
+            tally.triangles(1);
+            canonical.hits(&self.mesh.vertices(primitive))
+        };
         match &self.index {
-            TriangleIndex::Bvh(tree) => tree.occluded(ray),
+            TriangleIndex::Bvh(tree) => tree.occluded(ray, tally),
             TriangleIndex::Kd(tree) => {
                 let mut found = false;
-                tree.visit_leaves(ray, |candidates| {
-                    found =
-                        candidates.iter().any(|&primitive| canonical.hits(&self.mesh.vertices(primitive)));
-                    if found { f64::NEG_INFINITY } else { ray.t_max }
-                });
+                tree.visit_steps_and_leaves(
+                    ray,
+                    || tally.node(),
+                    |candidates| {
+                        found = candidates.iter().any(|&primitive| hits(primitive));
+                        if found { f64::NEG_INFINITY } else { ray.t_max }
+                    },
+                );
                 found
             }
-            TriangleIndex::None => (0..self.mesh.triangle_count() as u32)
-                .any(|primitive| canonical.hits(&self.mesh.vertices(primitive))),
+            TriangleIndex::None => (0..self.mesh.triangle_count() as u32).any(hits),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! are remembered one by one, so that leaving an outer one while inside an inner one changes nothing.
 
 use super::{Hit, Intersection, ObjectId, World};
+use crate::accel::{Tally, Uncounted};
 use crate::geometry::error::leave_surface;
 use crate::geometry::{DVec3, Ray};
 use arrayvec::ArrayVec;
@@ -52,7 +53,7 @@ impl Media {
             let Some(hit) = world.intersect(&ray) else { break };
             let intersection = world.intersection(&ray, &hit);
             let here = (hit.object, intersection.from_inside);
-            let touching = world.touching(&intersection, OUTWARD);
+            let touching = world.touching(&intersection, OUTWARD, &Uncounted);
             let others = touching.iter().map(|other| (other.object, other.from_inside));
             for (object, from_inside) in std::iter::once(here).chain(others) {
                 if met.iter().all(|&(other, _)| other != object) {
@@ -119,12 +120,17 @@ impl World {
 
     /// The surface that counts at a hit, and the dielectrics that touch it there. An opaque surface that touches a
     /// transparent one, as where glass stands on a table, is what is seen.
-    pub(crate) fn seen_surface(&self, ray: &Ray, hit: &Hit) -> (Intersection, Vec<Touching>) {
+    pub(crate) fn seen_surface(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        tally: &impl Tally,
+    ) -> (Intersection, Vec<Touching>) {
         let at = self.intersection(ray, hit);
         if self.material(at.material).transmit.is_black() {
             return (at, Vec::new());
         }
-        let touching = self.touching(&at, ray.direction);
+        let touching = self.touching(&at, ray.direction, tally);
         match touching.iter().find(|other| !other.is_transmissive) {
             Some(&Touching { object, primitive, .. }) => {
                 (self.intersection(ray, &Hit { t: hit.t, object, primitive }), Vec::new())
@@ -135,13 +141,13 @@ impl World {
 
     /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in
     /// `direction` meets them. In the order of their objects' ids; almost always none.
-    pub(crate) fn touching(&self, at: &Intersection, direction: DVec3) -> Vec<Touching> {
+    pub(crate) fn touching(&self, at: &Intersection, direction: DVec3, tally: &impl Tally) -> Vec<Touching> {
         let segment = across(at, direction);
         let mut touching: Vec<Touching> = Vec::new();
-        self.visit_objects(&segment, |id, object| {
+        self.visit_objects(&segment, tally, |id, object| {
             if id != at.object && touching.iter().all(|other| other.object != id) {
                 let ray = object.placement.ray_to_object(&segment);
-                if let Some(local) = object.geometry.intersect(&ray, &self.meshes) {
+                if let Some(local) = object.geometry.intersect(&ray, &self.meshes, tally) {
                     let hit = Hit { t: local.t, object: id, primitive: local.primitive };
                     touching.push(Touching {
                         object: id,

@@ -33,7 +33,7 @@ pub(crate) use media::Touching;
 
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{NarrowRay, Narrowed, walk};
-use crate::accel::{Bvh, KdTree};
+use crate::accel::{Bvh, KdTree, Tally, Uncounted};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, Placement, Ray};
 use crate::scene::{Light, Material, MaterialId, NodeId};
@@ -218,12 +218,17 @@ impl World {
 
     /// The nearest hit with t in (0, `ray.t_max`); a hit exactly at an end may or may not be reported.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.intersect_tallied(ray, &Uncounted)
+    }
+
+    /// As [`World::intersect`], and tells what it looks at.
+    pub(crate) fn intersect_tallied(&self, ray: &Ray, tally: &impl Tally) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        self.visit_objects(ray, |id, object| {
+        self.visit_objects(ray, tally, |id, object| {
             // A hit at the same t is looked at too: the lower object is to win.
             let t_max = best.map_or(ray.t_max, |hit| hit.t.next_up());
             let local_ray = Ray { t_max, ..object.placement.ray_to_object(ray) };
-            if let Some(local) = object.geometry.intersect(&local_ray, &self.meshes) {
+            if let Some(local) = object.geometry.intersect(&local_ray, &self.meshes, tally) {
                 let hit = Hit { t: local.t, object: id, primitive: local.primitive };
                 let nearer = best.is_none_or(|best| (hit.t, hit.object) < (best.t, best.object));
                 if nearer {
@@ -237,10 +242,15 @@ impl World {
 
     /// Whether the ray meets anything with t in (0, `ray.t_max`).
     pub fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_tallied(ray, &Uncounted)
+    }
+
+    /// As [`World::occluded`], and tells what it looks at.
+    pub(crate) fn occluded_tallied(&self, ray: &Ray, tally: &impl Tally) -> bool {
         let mut found = false;
-        self.visit_objects(ray, |_, object| {
+        self.visit_objects(ray, tally, |_, object| {
             let local_ray = object.placement.ray_to_object(ray);
-            found = object.geometry.occluded(&local_ray, &self.meshes);
+            found = object.geometry.occluded(&local_ray, &self.meshes, tally);
             if found { f64::NEG_INFINITY } else { ray.t_max }
         });
         found
@@ -256,7 +266,7 @@ impl World {
 
     /// Calls `visit` with the objects that the ray may meet, each once, roughly near before far. `visit` returns
     /// the t up to which hits still count, or `f64::NEG_INFINITY` to end.
-    fn visit_objects(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
+    fn visit_objects(&self, ray: &Ray, tally: &impl Tally, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
         let mut t_max = ray.t_max;
         for &id in &self.unbounded {
             t_max = visit(id, self.object(id));
@@ -281,24 +291,30 @@ impl World {
                         }
                         narrow.up_to(t_max)
                     };
-                    dispatch!(*level, simd => walk::<_, true>(simd, tree.nodes(), &narrow, &mut visit_leaf));
+                    dispatch!(*level, simd => {
+                        walk::<_, true>(simd, tree.nodes(), &narrow, tally, &mut visit_leaf);
+                    });
                 }
                 Narrowed::OutOfRange => self.visit_all_bounded(visit),
             },
             ObjectIndex::Kd(tree) => {
                 let mut visited = Mailbox::default();
-                tree.visit_leaves(&ray, |candidates| {
-                    for &candidate in candidates {
-                        if visited.first_time(candidate) {
-                            let id = self.bounded[candidate as usize];
-                            t_max = visit(id, self.object(id));
-                            if t_max == f64::NEG_INFINITY {
-                                break;
+                tree.visit_steps_and_leaves(
+                    &ray,
+                    || tally.node(),
+                    |candidates| {
+                        for &candidate in candidates {
+                            if visited.first_time(candidate) {
+                                let id = self.bounded[candidate as usize];
+                                t_max = visit(id, self.object(id));
+                                if t_max == f64::NEG_INFINITY {
+                                    break;
+                                }
                             }
                         }
-                    }
-                    t_max
-                });
+                        t_max
+                    },
+                );
             }
             ObjectIndex::None => self.visit_all_bounded(visit),
         }

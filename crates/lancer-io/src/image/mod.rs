@@ -2,10 +2,13 @@
 //!
 //! [`load_texture`] reads what materials use; [`encode`] writes what was rendered, and [`read_picture`] reads it back.
 
+pub mod animation;
+pub mod cutout;
 mod decode;
 pub mod encode;
 mod exif;
 mod format;
+pub mod layers;
 mod metadata;
 mod read;
 

@@ -8,6 +8,8 @@ mod man;
 mod render;
 mod scenes;
 mod schema;
+mod thumbnail;
+mod turntable;
 mod verify;
 mod window;
 
@@ -22,6 +24,8 @@ pub(crate) fn run(args: Args) -> Result<(), Error> {
     match args.command {
         None => window::run(args.scene.as_deref()),
         Some(Command::Render(args)) => render::run(*args),
+        Some(Command::Turntable(args)) => turntable::run(*args),
+        Some(Command::Thumbnail(args)) => thumbnail::run(&args),
         Some(Command::Scenes(args)) => scenes::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Check(args)) => check::run(&args),

@@ -7,11 +7,12 @@ use crate::job::{Job, Shot};
 use crate::progress::Progress;
 use crate::report::{self, Report, Stages};
 use crate::terminal;
-use lancer_core::render::{CancelToken, Control, Render, render, with_threads};
+use lancer_core::integrator::RayCounts;
+use lancer_core::render::passes::{Layer, Pass, PassRender, render_passes};
+use lancer_core::render::{CancelToken, Control, Render, RenderError, Tile, render, with_threads};
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
-use lancer_io::image::Metadata;
 use std::time::{Duration, Instant};
 
 /// Renders, writes, and tells what was done.
@@ -20,35 +21,47 @@ use std::time::{Duration, Instant};
 /// See [`Error`].
 pub(crate) fn run(args: RenderArgs) -> Result<(), Error> {
     let job = Job::new(args)?;
-    let work = with_threads(job.threads, || run_job(&job));
-    work.map_err(|error| Error::Render(format!("cannot start {} threads: {error}", job.threads)))?
+    let work = with_threads(job.setup.threads, || run_job(&job));
+    work.map_err(|error| Error::Render(format!("cannot start {} threads: {error}", job.setup.threads)))?
 }
 
 fn run_job(job: &Job) -> Result<(), Error> {
+    let setup = &job.setup;
     let progress = Progress::new(job.quiet);
     let mut stages = Stages::default();
 
-    let loaded = timed(&mut stages.load, || progress.during("reading", || job.source.load(&job.load)))?;
+    let loaded = timed(&mut stages.load, || progress.during("reading", || setup.source.load(&setup.load)))?;
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;
+    let plan = job.passes.as_ref().map(|files| files.plan(&scene)).transpose()?;
     let metadata = timed(&mut stages.load, || job.metadata(&scene, &shot));
 
     let world =
-        timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &job.compile)))
-            .map_err(|error| LoadError::from(job.source.diagnostic(error)))?;
+        timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &setup.compile)))
+            .map_err(|error| LoadError::from(setup.source.diagnostic(error)))?;
+    let table = plan.as_ref().map(|plan| plan.table(&scene, &world));
     drop(scene);
 
     let cancel = CancelToken::default();
-    let picture = timed(&mut stages.render, || trace(&shot, job.tile_size, &world, &cancel, &progress))?;
-    timed(&mut stages.write, || write(job, &shot, &picture, &metadata, &cancel, &progress))?;
+    let (picture, layers) = timed(&mut stages.render, || match &plan {
+        None => Ok((trace(&shot, setup.tile_size, &world, &cancel, &progress)?, Vec::new())),
+        Some(plan) => trace_passes(&shot, setup.tile_size, &world, &plan.passes, &cancel, &progress),
+    })?;
+    timed(&mut stages.write, || {
+        progress.during("writing", || match &plan {
+            None => job.destination.write(&picture.image, shot.tone, &metadata, &cancel),
+            Some(plan) => plan.write(&shot.tone.expose(&picture.image), &layers, metadata, &cancel),
+        })
+    })?;
 
     let late = report::warnings_about(&picture, &world, &shot);
-    let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
+    let late = late.iter().map(|message| setup.source.diagnostic(message)).collect::<Vec<_>>();
     late.iter().for_each(terminal::tell_warning);
     warnings.extend(late);
     let (world, rays) = (world.statistics(), picture.rays);
-    tell(&Report { job, shot: &shot, world, rays, stages, warnings: &warnings })
+    let layers = table;
+    tell(&Report { job, shot: &shot, world, rays, stages, layers, warnings: &warnings })
 }
 
 /// Renders, and draws how it goes on; a request to stop cancels it.
@@ -62,23 +75,43 @@ pub(super) fn trace(
     cancel: &CancelToken,
     progress: &Progress,
 ) -> Result<Render, Error> {
+    watched(shot, tile_size, cancel, progress, |control| {
+        Ok(render(world, &shot.camera, &shot.settings, shot.region, control)?)
+    })
+}
+
+/// As [`trace`], with the layers of passes.
+fn trace_passes(
+    shot: &Shot,
+    tile_size: u32,
+    world: &World,
+    passes: &[Pass],
+    cancel: &CancelToken,
+    progress: &Progress,
+) -> Result<(Render, Vec<Layer>), Error> {
+    let &Shot { camera, settings, region, tone } = shot;
+    watched(shot, tile_size, cancel, progress, |control| {
+        match render_passes(world, &camera, &settings, region, passes, tone.factor(), control) {
+            Ok(PassRender { render, layers }) => Ok((render, layers)),
+            Err(error @ RenderError::Layers { .. }) => Err(Error::usage(error.to_string())),
+            Err(error) => Err(error.into()),
+        }
+    })
+}
+
+/// Draws how a render goes on; a request to stop cancels it.
+fn watched<T>(
+    shot: &Shot,
+    tile_size: u32,
+    cancel: &CancelToken,
+    progress: &Progress,
+    render: impl FnOnce(&Control) -> Result<T, Error>,
+) -> Result<T, Error> {
     let _handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
-    let control =
-        Control { cancel: cancel.clone(), on_tile: &|tile, rays| bar.advance(tile, rays), tile_size };
-    Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
-}
-
-fn write(
-    job: &Job,
-    shot: &Shot,
-    picture: &Render,
-    metadata: &Metadata,
-    cancel: &CancelToken,
-    progress: &Progress,
-) -> Result<(), Error> {
-    progress.during("writing", || job.destination.write(&picture.image, shot.tone, metadata, cancel))
+    let on_tile = |tile: &Tile, rays: &RayCounts| bar.advance(tile, rays);
+    render(&Control { cancel: cancel.clone(), on_tile: &on_tile, tile_size })
 }
 
 fn tell(report: &Report) -> Result<(), Error> {
@@ -89,7 +122,7 @@ fn tell(report: &Report) -> Result<(), Error> {
 }
 
 /// Does `work` and notes how long it took, beside what was noted before.
-fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
+pub(super) fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     *duration += start.elapsed();

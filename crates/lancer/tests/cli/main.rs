@@ -2,11 +2,13 @@
 
 mod compare;
 mod errors;
+mod films;
 mod inspect;
 #[cfg(unix)]
 mod interrupt;
 mod messages;
 mod output;
+mod passes;
 mod picture;
 mod sandbox;
 #[cfg(unix)]

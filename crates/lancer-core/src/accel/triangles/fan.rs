@@ -16,6 +16,7 @@ use super::ray::{
 };
 use super::walk::{STACK, walk_from};
 use crate::accel::bvh::{Child, WIDTH, WideNode};
+use crate::accel::tally::Tally;
 use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
@@ -135,6 +136,7 @@ pub(super) fn occluded<S: Simd>(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    tally: &impl Tally,
     mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> u64 {
     let fan = &Fan::new(receiver, directions, &tree.bounds);
@@ -149,6 +151,7 @@ pub(super) fn occluded<S: Simd>(
         if child.is_leaf() {
             let mut left = child.count();
             for block in &tree.blocks[child.first()..child.first() + left.div_ceil(BLOCK)] {
+                tally.triangles(left.min(BLOCK));
                 let hit = block_of_fan(simd, fan, block, left.min(BLOCK), mask & open, &mut decide);
                 open &= !hit;
                 left = left.saturating_sub(BLOCK);
@@ -158,11 +161,12 @@ pub(super) fn occluded<S: Simd>(
             while rest != 0 {
                 let i = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
-                if alone(simd, tree, fan, child, i, &mut decide) {
+                if alone(simd, tree, fan, child, i, tally, &mut decide) {
                     open &= !(1 << i);
                 }
             }
         } else {
+            tally.node();
             node_of_fan(simd, fan, &tree.nodes[child.node()], mask, &mut stack);
         }
         if open == 0 {
@@ -175,6 +179,7 @@ pub(super) fn occluded<S: Simd>(
 /// Calls `visit` with the leaves of a hierarchy that some of the directions `wanted` may meet, and with which; it
 /// returns those that are done with.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the tree, the fan, and who is told, each by its parts")]
 pub(super) fn leaves<S: Simd>(
     simd: S,
     nodes: &[WideNode],
@@ -182,6 +187,7 @@ pub(super) fn leaves<S: Simd>(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    tally: &impl Tally,
     visit: &mut impl FnMut(Child, u64) -> u64,
 ) {
     let fan = &Fan::new(receiver, directions, bounds);
@@ -196,6 +202,7 @@ pub(super) fn leaves<S: Simd>(
         if child.is_leaf() {
             open &= !visit(child, mask);
         } else {
+            tally.node();
             node_of_fan(simd, fan, &nodes[child.node()], mask, &mut stack);
         }
     }
@@ -491,15 +498,17 @@ fn alone<S: Simd>(
     fan: &Fan,
     start: Child,
     i: usize,
+    tally: &impl Tally,
     decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> bool {
     let ray = fan.ray(i);
     let block_ray = BlockRay::new(simd, &ray);
     let sure_end = fan.reach * (1.0 - 1e-5);
     let mut found = false;
-    walk_from::<S, true>(simd, &tree.nodes, start, &ray, |leaf| {
+    walk_from::<S, true>(simd, &tree.nodes, start, &ray, tally, |leaf| {
         let mut left = leaf.count();
         for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
+            tally.triangles(left.min(BLOCK));
             let verdict = block.test(simd, &block_ray, left.min(BLOCK), ray.end);
             let mut maybe = verdict.maybe;
             while maybe != 0 {

@@ -19,6 +19,7 @@ pub(crate) use walk::walk;
 
 use super::Aabb;
 use super::bvh::{BuildError, Bvh, Child, Quality, WideNode, boxes_at};
+use super::tally::Tally;
 use crate::cancel::CancelToken;
 use crate::geometry::{Bounds, DirectionFan, Ray};
 use crate::mesh::Mesh;
@@ -31,6 +32,7 @@ use rayon::prelude::*;
 /// Calls `visit` with the leaves of a hierarchy within `bounds` that some of the directions `wanted` from a point may
 /// meet, and with which; it returns those that are done with. Says whether it could: not where the numbers leave the
 /// range of `f32`.
+#[expect(clippy::too_many_arguments, reason = "the tree, the fan, and who is told, each by its parts")]
 pub(crate) fn visit_fan(
     level: Level,
     nodes: &[WideNode],
@@ -38,12 +40,13 @@ pub(crate) fn visit_fan(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    tally: &impl Tally,
     mut visit: impl FnMut(Child, u64) -> u64,
 ) -> bool {
     let fits = receiver.fits(bounds);
     if fits {
         dispatch!(level, simd => {
-            fan::leaves(simd, nodes, bounds, receiver, directions, wanted, &mut visit);
+            fan::leaves(simd, nodes, bounds, receiver, directions, wanted, tally, &mut visit);
         });
     }
     fits
@@ -122,24 +125,24 @@ impl TriangleTree {
     }
 
     /// The nearest hit; of several at the same t, the lowest triangle's.
-    pub(crate) fn intersect(&self, ray: &Ray) -> Option<Hit> {
+    pub(crate) fn intersect(&self, ray: &Ray, tally: &impl Tally) -> Option<Hit> {
         match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => None,
             Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::intersect(simd, self, ray, &narrow))
+                dispatch!(self.level, simd => single::intersect(simd, self, ray, &narrow, tally))
             }
-            Narrowed::OutOfRange => self.intersect_wide(ray),
+            Narrowed::OutOfRange => self.intersect_wide(ray, tally),
         }
     }
 
     /// Whether anything is hit.
-    pub(crate) fn occluded(&self, ray: &Ray) -> bool {
+    pub(crate) fn occluded(&self, ray: &Ray, tally: &impl Tally) -> bool {
         match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => false,
             Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::occluded(simd, self, ray, &narrow))
+                dispatch!(self.level, simd => single::occluded(simd, self, ray, &narrow, tally))
             }
-            Narrowed::OutOfRange => self.intersect_wide(ray).is_some(),
+            Narrowed::OutOfRange => self.intersect_wide(ray, tally).is_some(),
         }
     }
 
@@ -150,20 +153,22 @@ impl TriangleTree {
         receiver: &Receiver,
         directions: &DirectionFan,
         wanted: u64,
+        tally: &impl Tally,
         mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> Option<u64> {
         receiver.fits(&self.bounds).then(|| {
             dispatch!(self.level, simd => {
-                fan::occluded(simd, self, receiver, directions, wanted, &mut decide)
+                fan::occluded(simd, self, receiver, directions, wanted, tally, &mut decide)
             })
         })
     }
 
     /// The nearest hit, in `f64` throughout: for the rare ray whose numbers leave the range of `f32`.
-    fn intersect_wide(&self, ray: &Ray) -> Option<Hit> {
+    fn intersect_wide(&self, ray: &Ray, tally: &impl Tally) -> Option<Hit> {
         let mut nearest = Nearest::new(ray);
         let mut stack = vec![0];
         while let Some(index) = stack.pop() {
+            tally.node();
             let node = &self.nodes[index];
             for place in 0..node.children.len() {
                 let child = node.child(place);
@@ -171,6 +176,7 @@ impl TriangleTree {
                     continue;
                 }
                 if child.is_leaf() {
+                    tally.triangles(child.count());
                     for (id, triangle) in self.leaf(child) {
                         nearest.consider(id, &triangle);
                     }

@@ -4,6 +4,7 @@ use super::TriangleTree;
 use super::block::{BLOCK, BlockRay};
 use super::ray::NarrowRay;
 use super::walk::walk;
+use crate::accel::tally::Tally;
 use crate::geometry::Ray;
 use crate::shape::Hit;
 use crate::shape::triangle::{Canonical, Nearest};
@@ -23,15 +24,22 @@ struct Candidate {
 
 /// The nearest hit.
 #[inline(always)]
-pub(super) fn intersect<S: Simd>(simd: S, tree: &TriangleTree, ray: &Ray, narrow: &NarrowRay) -> Option<Hit> {
+pub(super) fn intersect<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    ray: &Ray,
+    narrow: &NarrowRay,
+    tally: &impl Tally,
+) -> Option<Hit> {
     let block_ray = BlockRay::new(simd, narrow);
     let mut nearest: Option<Nearest> = None;
     let mut candidates = ArrayVec::<Candidate, CANDIDATES>::new();
     let mut end = narrow.end;
-    walk::<S, true>(simd, &tree.nodes, narrow, |leaf| {
+    walk::<S, true>(simd, &tree.nodes, narrow, tally, |leaf| {
         let mut left = leaf.count();
         let mut index = leaf.first();
         while left > 0 {
+            tally.triangles(left.min(BLOCK));
             let verdict = tree.blocks[index].test(simd, &block_ray, left.min(BLOCK), end);
             let mut maybe = verdict.maybe;
             while maybe != 0 {
@@ -82,15 +90,22 @@ fn settle(
 
 /// Whether anything is hit.
 #[inline(always)]
-pub(super) fn occluded<S: Simd>(simd: S, tree: &TriangleTree, ray: &Ray, narrow: &NarrowRay) -> bool {
+pub(super) fn occluded<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    ray: &Ray,
+    narrow: &NarrowRay,
+    tally: &impl Tally,
+) -> bool {
     let block_ray = BlockRay::new(simd, narrow);
     let mut found = false;
     let mut canonical = Canonical::new(ray);
-    walk::<S, true>(simd, &tree.nodes, narrow, |leaf| {
+    walk::<S, true>(simd, &tree.nodes, narrow, tally, |leaf| {
         let mut left = leaf.count();
         let mut index = leaf.first();
         while left > 0 {
             let block = &tree.blocks[index];
+            tally.triangles(left.min(BLOCK));
             let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);
             let mut unsure = verdict.maybe;
             if verdict.sure != 0 {

@@ -1,6 +1,7 @@
 //! The kernels against the canonical test on every triangle, on each instruction set of this processor.
 
 use super::*;
+use crate::accel::Uncounted;
 use crate::geometry::DVec3;
 use crate::mesh::MeshData;
 use crate::shape::triangle::Canonical;
@@ -103,8 +104,14 @@ fn nearest_and_any_hit_are_those_of_the_canonical_test_on_every_triangle() {
             }
             let expected = nearest.found();
             for tree in &trees {
-                assert_eq!(tree.intersect(&ray), expected, "{:?} {ray:?} {:?}", tree.level, mesh.bounds());
-                assert_eq!(tree.occluded(&ray), expected.is_some(), "{:?} {ray:?}", tree.level);
+                assert_eq!(
+                    tree.intersect(&ray, &Uncounted),
+                    expected,
+                    "{:?} {ray:?} {:?}",
+                    tree.level,
+                    mesh.bounds()
+                );
+                assert_eq!(tree.occluded(&ray, &Uncounted), expected.is_some(), "{:?} {ray:?}", tree.level);
             }
             if expected.is_some() { hits += 1 } else { misses += 1 }
         }
@@ -126,7 +133,7 @@ fn most_rays_are_settled_without_the_canonical_test() {
         let Narrowed::Ready(narrow) = NarrowRay::prepare(&ray, &tree.bounds) else { continue };
         dispatch!(tree.level, simd => {
             let block_ray = block::BlockRay::new(simd, &narrow);
-            walk::<_, true>(simd, &tree.nodes, &narrow, |leaf| {
+            walk::<_, true>(simd, &tree.nodes, &narrow, &Uncounted, |leaf| {
                 let mut left = leaf.count();
                 for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
                     let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);
@@ -166,7 +173,7 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
                 };
                 let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: reach };
                 let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
-                let found = tree.occluded_fan(&receiver, &fan, fan.all(), decide).unwrap();
+                let found = tree.occluded_fan(&receiver, &fan, fan.all(), &Uncounted, decide).unwrap();
                 for i in 0..fan.count {
                     let ray = ray(i);
                     let mut canonical = Canonical::new(&ray);

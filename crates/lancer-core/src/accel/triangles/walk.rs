@@ -3,6 +3,7 @@
 use super::lanes::splat3;
 use super::ray::NarrowRay;
 use crate::accel::bvh::{Bvh, Child, WIDTH, WideNode};
+use crate::accel::tally::Tally;
 use arrayvec::ArrayVec;
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
@@ -19,9 +20,10 @@ pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
     simd: S,
     nodes: &[WideNode],
     ray: &NarrowRay,
+    tally: &impl Tally,
     visit: impl FnMut(Child) -> f32,
 ) {
-    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, visit);
+    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, tally, visit);
 }
 
 /// As [`walk`], through the part of the hierarchy below `start`.
@@ -31,6 +33,7 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
     nodes: &[WideNode],
     start: Child,
     ray: &NarrowRay,
+    tally: &impl Tally,
     mut visit: impl FnMut(Child) -> f32,
 ) {
     let inverse: [f32x8<S>; 3] = splat3(simd, ray.inverse);
@@ -48,6 +51,7 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
                 return;
             }
         } else {
+            tally.node();
             let node = &nodes[current.node()];
             let enter = plane(simd, node, 0, backward[0], inverse[0], enter_offset[0])
                 .max(plane(simd, node, 1, backward[1], inverse[1], enter_offset[1]))

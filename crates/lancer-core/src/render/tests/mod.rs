@@ -2,6 +2,7 @@
 
 mod features;
 mod occlusion;
+mod passes;
 mod switches;
 
 use super::*;

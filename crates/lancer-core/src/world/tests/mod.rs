@@ -325,7 +325,7 @@ fn ten_thousand_objects_cost_little_more_than_one() {
     for _ in 0..rays {
         let to = DVec3::new(random.between(0.0, 300.0), 0.0, random.between(0.0, 300.0));
         let ray = Ray::new(to + DVec3::Y * 20.0, DVec3::NEG_Y + random.point(0.3));
-        world.visit_objects(&ray, |_, _| {
+        world.visit_objects(&ray, &Uncounted, |_, _| {
             visits += 1;
             ray.t_max
         });

@@ -46,7 +46,7 @@ fn half(value: f32) -> f16 {
 }
 
 /// The metadata as attributes of a layer.
-fn attributes(metadata: &Metadata) -> LayerAttributes {
+pub(in super::super) fn attributes(metadata: &Metadata) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         software_name: Text::new_or_none(&metadata.software),
         comments: Some(metadata.title.as_str()).filter(|title| !title.is_empty()).and_then(Text::new_or_none),
@@ -61,7 +61,8 @@ fn attributes(metadata: &Metadata) -> LayerAttributes {
     attributes
 }
 
-fn layout(compression: Option<Compression>) -> ExrEncoding {
+/// How pixels are packed.
+pub(in super::super) fn layout(compression: Option<Compression>) -> ExrEncoding {
     ExrEncoding {
         compression: match compression {
             Some(Compression::Piz) => ExrCompression::PIZ,
