@@ -9,6 +9,7 @@ pub mod limits;
 mod load;
 pub mod model;
 pub mod output;
+pub mod progress;
 pub mod resolver;
 pub mod scene_file;
 pub mod showcase;

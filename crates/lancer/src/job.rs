@@ -14,7 +14,6 @@ use lancer_core::render::{Control, Region, RenderError};
 use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
-use lancer_io::limits::Limits;
 use std::num::NonZero;
 
 /// What to render, how, and where to.
@@ -158,11 +157,7 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
 }
 
 fn load_options(reading: ReadingArgs) -> LoadOptions {
-    LoadOptions {
-        limits: Limits::default(),
-        allow_outside: reading.access.allow_outside,
-        overrides: reading.overrides,
-    }
+    LoadOptions { overrides: reading.overrides, ..reading.files.load_options() }
 }
 
 fn compile_options(work: &WorkArgs) -> CompileOptions {

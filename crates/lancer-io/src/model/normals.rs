@@ -7,7 +7,7 @@
 //! A normal is the sum of those of its faces, each weighted by its angle there, so that it does not depend on how
 //! a surface is cut into triangles. Source: G. Thürmer and C. A. Wüthrich, "Computing vertex normals from
 //! polygonal facets" (Journal of Graphics Tools 3(1), 1998). Time is linear, but for the sorting of the edges about
-//! each position; memory is some 50 bytes a triangle.
+//! each position; memory is some 80 bytes a triangle.
 
 use super::options::Crease;
 use lancer_core::geometry::{DVec3, portable};

@@ -9,8 +9,8 @@ use crate::report::{self, Report, Stages};
 use crate::terminal;
 use lancer_core::render::{CancelToken, Control, Render, render, with_threads};
 use lancer_core::world::World;
-use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::{LoadOptions, Loaded};
 use std::time::{Duration, Instant};
 
 /// Renders, writes, and tells what was done.
@@ -27,7 +27,10 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let progress = Progress::new(job.quiet);
     let mut stages = Stages::default();
 
-    let loaded = timed(&mut stages.load, || progress.during("reading", || job.source.load(&job.load)))?;
+    let loaded = timed(&mut stages.load, || {
+        let reading = progress.reading();
+        job.source.load(&LoadOptions { progress: reading.hears(), ..job.load.clone() })
+    })?;
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;

@@ -1,6 +1,8 @@
 //! The program as its users meet it: run from outside, judged by exit codes, streams and files.
 
 mod errors;
+#[cfg(target_os = "linux")]
+mod hostile;
 mod inspect;
 #[cfg(unix)]
 mod interrupt;
