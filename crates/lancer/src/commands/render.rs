@@ -10,6 +10,7 @@ use crate::terminal;
 use lancer_core::render::{CancelToken, Control, Render, render, with_threads};
 use lancer_core::world::World;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::image::Metadata;
 use lancer_io::{LoadOptions, Loaded};
 use std::time::{Duration, Instant};
 
@@ -34,6 +35,7 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;
+    let metadata = timed(&mut stages.load, || job.metadata(&scene, &shot));
 
     let world =
         timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &job.compile)))
@@ -41,8 +43,8 @@ fn run_job(job: &Job) -> Result<(), Error> {
     drop(scene);
 
     let cancel = CancelToken::default();
-    let picture = timed(&mut stages.render, || trace(job, &shot, &world, &cancel, &progress))?;
-    timed(&mut stages.write, || write(job, &shot, &picture, &cancel, &progress))?;
+    let picture = timed(&mut stages.render, || trace(&shot, job.tile_size, &world, &cancel, &progress))?;
+    timed(&mut stages.write, || write(job, &shot, &picture, &metadata, &cancel, &progress))?;
 
     let late = report::warnings_about(&picture, &world, &shot);
     let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
@@ -52,9 +54,13 @@ fn run_job(job: &Job) -> Result<(), Error> {
     tell(&Report { job, shot: &shot, world, rays, stages, warnings: &warnings })
 }
 
-fn trace(
-    job: &Job,
+/// Renders, and draws how it goes on; a request to stop cancels it.
+///
+/// # Errors
+/// It was cancelled, or failed.
+pub(super) fn trace(
     shot: &Shot,
+    tile_size: u32,
     world: &World,
     cancel: &CancelToken,
     progress: &Progress,
@@ -62,11 +68,8 @@ fn trace(
     let _handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
-    let control = Control {
-        cancel: cancel.clone(),
-        on_tile: &|tile, rays| bar.advance(tile, rays),
-        tile_size: job.tile_size,
-    };
+    let control =
+        Control { cancel: cancel.clone(), on_tile: &|tile, rays| bar.advance(tile, rays), tile_size };
     Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
 }
 
@@ -74,10 +77,11 @@ fn write(
     job: &Job,
     shot: &Shot,
     picture: &Render,
+    metadata: &Metadata,
     cancel: &CancelToken,
     progress: &Progress,
 ) -> Result<(), Error> {
-    progress.during("writing", || job.destination.write(&shot.tone.expose(&picture.image), cancel))
+    progress.during("writing", || job.destination.write(&picture.image, shot.tone, metadata, cancel))
 }
 
 fn tell(report: &Report) -> Result<(), Error> {
@@ -87,10 +91,10 @@ fn tell(report: &Report) -> Result<(), Error> {
     if report.job.json { terminal::print(report.json()) } else { Ok(()) }
 }
 
-/// Does `work` and notes how long it took.
+/// Does `work` and notes how long it took, beside what was noted before.
 fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
-    *duration = start.elapsed();
+    *duration += start.elapsed();
     result
 }

@@ -11,6 +11,7 @@ pub use state::{FilePicker, Place, Purpose};
 
 use crate::Phrase;
 use lancer_io::SCENE_EXTENSIONS;
+use lancer_io::image::ImageFormat;
 use lancer_io::model::ModelFormat;
 
 impl Purpose {
@@ -37,7 +38,7 @@ impl Purpose {
             Self::Open => {
                 SCENE_EXTENSIONS.into_iter().chain(ModelFormat::ALL.map(ModelFormat::extension)).collect()
             }
-            Self::SavePicture => vec!["png", "exr"],
+            Self::SavePicture => ImageFormat::EXTENSIONS.to_vec(),
             Self::SaveScene => vec!["yaml", "yml"],
         }
     }

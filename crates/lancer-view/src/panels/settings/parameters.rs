@@ -20,7 +20,7 @@ pub(super) const SCENE: Parameter = parameter(
 
 pub(super) const CAMERA: Parameter = parameter(
     ("Camera", "Caméra"),
-    ("Look through one of the scene's cameras", "Regarder par l’une des caméras de la scène"),
+    ("Look through one of the scene’s cameras", "Regarder par l’une des caméras de la scène"),
 );
 
 pub(super) const WIDTH: Parameter = parameter(
@@ -46,6 +46,14 @@ pub(super) const EXPOSURE: Parameter = parameter(
     (
         "In stops: the picture is multiplied by 2 to this power, and then cut to [0, 1].",
         "En diaphragmes : l’image est multipliée par 2 à cette puissance, puis ramenée à [0, 1].",
+    ),
+);
+
+pub(super) const CURVE: Parameter = parameter(
+    ("Tone curve", "Courbe de tons"),
+    (
+        "What becomes of light brighter than the screen: it is cut, or compressed as by Reinhard or by film. Raw shows linear values as they are, too dark.",
+        "Ce que devient la lumière plus vive que l’écran : elle est coupée, ou comprimée à la Reinhard ou comme un film. Brut montre les valeurs linéaires telles quelles, trop sombres.",
     ),
 );
 
@@ -76,7 +84,7 @@ pub(super) const REFLECTIONS: Parameter = parameter(
 pub(super) const REFRACTIONS: Parameter = parameter(
     ("Refractions", "Réfractions"),
     (
-        "The term k_t L_t: L_t is the light that comes through the surface, bent by Snell's law.",
+        "The term k_t L_t: L_t is the light that comes through the surface, bent by Snell’s law.",
         "Le terme k_t L_t : L_t est la lumière qui traverse la surface, déviée selon la loi de Snell-Descartes.",
     ),
 );
@@ -90,7 +98,7 @@ pub(super) const AMBIENT: Parameter = parameter(
 );
 
 pub(super) const BACKGROUND: Parameter = parameter(
-    ("Background", "Fond"),
+    ("Background", "Arrière-plan"),
     (
         "The light of a ray that meets nothing; it is seen in mirrors and glass too.",
         "La lumière d’un rayon qui ne rencontre rien ; elle se voit aussi dans les miroirs et le verre.",
