@@ -43,13 +43,13 @@ pub enum MeshError {
     /// A number is NaN or infinite.
     #[error("the {attribute} of vertex {vertex} is not finite")]
     NotFinite {
-        /// `position`, `normal`, `texture coordinate` or `color`.
+        /// `position`, `normal`, `texture coordinate` or `colour`.
         attribute: &'static str,
         /// The vertex, counted from 0.
         vertex: usize,
     },
     /// A colour would take light away or give more than there is.
-    #[error("the color of vertex {vertex} is not within [0, 1]")]
+    #[error("the colour of vertex {vertex} is not within [0, 1]")]
     ColorOutOfRange {
         /// The vertex, counted from 0.
         vertex: usize,
@@ -57,7 +57,7 @@ pub enum MeshError {
     /// An attribute array is neither empty nor of one entry a vertex.
     #[error("there are {found} {attribute}s for {vertices} vertices")]
     LengthMismatch {
-        /// `normal`, `texture coordinate` or `color`.
+        /// `normal`, `texture coordinate` or `colour`.
         attribute: &'static str,
         /// Entries found.
         found: usize,
@@ -98,7 +98,7 @@ impl Mesh {
         let lengths = [
             ("normal", data.normals.len()),
             ("texture coordinate", data.uvs.len()),
-            ("color", data.colors.len()),
+            ("colour", data.colors.len()),
         ];
         for (attribute, found) in lengths {
             if found != 0 && found != vertices {
@@ -108,7 +108,7 @@ impl Mesh {
         all_finite("position", &data.positions)?;
         all_finite("normal", &data.normals)?;
         all_finite("texture coordinate", &data.uvs)?;
-        all_finite("color", &data.colors)?;
+        all_finite("colour", &data.colors)?;
         let is_color = |color: &[f32; 3]| color.iter().all(|x| (0.0..=1.0).contains(x));
         if let Some(vertex) = data.colors.iter().position(|color| !is_color(color)) {
             return Err(MeshError::ColorOutOfRange { vertex });
@@ -243,11 +243,11 @@ mod tests {
         assert_eq!(Mesh::new(data), Err(fault));
 
         let data = MeshData { colors: vec![[1.0; 3]; 2], ..triangle() };
-        let fault = MeshError::LengthMismatch { attribute: "color", found: 2, vertices: 3 };
+        let fault = MeshError::LengthMismatch { attribute: "colour", found: 2, vertices: 3 };
         assert_eq!(Mesh::new(data), Err(fault));
 
         let colored = |color| MeshData { colors: vec![[0.0; 3], color, [1.0; 3]], ..triangle() };
-        let not_finite = Err(MeshError::NotFinite { attribute: "color", vertex: 1 });
+        let not_finite = Err(MeshError::NotFinite { attribute: "colour", vertex: 1 });
         assert_eq!(Mesh::new(colored([f32::NAN, 0.0, 0.0])), not_finite);
         for color in [[1.0, 1.5, 0.0], [-0.1, 0.0, 0.0]] {
             assert_eq!(Mesh::new(colored(color)), Err(MeshError::ColorOutOfRange { vertex: 1 }));

@@ -56,6 +56,7 @@ mod load;
 pub mod model;
 pub mod output;
 mod package;
+pub mod progress;
 pub mod provenance;
 pub mod resolver;
 pub mod scene_file;

@@ -1,5 +1,7 @@
 //! How much a file may ask for.
 
+use std::str::FromStr;
+
 /// The bounds that keep a hostile file from taking the machine. Each is checked before anything is allocated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -7,6 +9,9 @@ pub struct Limits {
     pub file_bytes: u64,
     /// The most triangles of one model.
     pub triangles: usize,
+    /// The most bytes that the triangles of one model may take while it is read, with all that is needed to make
+    /// them. About 150 to 200 a triangle are usual.
+    pub memory: u64,
     /// The most pixels of one texture.
     pub texture_pixels: u64,
     /// The most nodes of a scene file's syntax tree, aliases expanded.
@@ -22,10 +27,146 @@ impl Default for Limits {
         Self {
             file_bytes: 8 << 30,
             triangles: 200_000_000,
+            memory: 16 << 30,
             texture_pixels: 1 << 26,
             syntax_nodes: 4_000_000,
             nesting: 200,
             errors: 50,
         }
+    }
+}
+
+/// A limit that users may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Name {
+    FileBytes,
+    Triangles,
+    Memory,
+    TexturePixels,
+    Errors,
+}
+
+impl Name {
+    const ALL: [Self; 5] =
+        [Self::FileBytes, Self::Triangles, Self::Memory, Self::TexturePixels, Self::Errors];
+
+    fn as_str(self) -> &'static str {
+        match self {
+            Self::FileBytes => "file-bytes",
+            Self::Triangles => "triangles",
+            Self::Memory => "memory",
+            Self::TexturePixels => "texture-pixels",
+            Self::Errors => "errors",
+        }
+    }
+
+    fn meaning(self) -> &'static str {
+        match self {
+            Self::FileBytes => "bytes of a file",
+            Self::Triangles => "triangles of a model",
+            Self::Memory => "bytes of memory to read a model in",
+            Self::TexturePixels => "pixels of a texture",
+            Self::Errors => "errors told of a file",
+        }
+    }
+}
+
+/// A new value of one limit, written `triangles=500M`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LimitChange {
+    name: Name,
+    value: u64,
+}
+
+/// Why a text is no [`LimitChange`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LimitChangeError {
+    /// There is no `=`.
+    #[error("must be a name and a number, as in triangles=500M")]
+    Form,
+    /// There is no such limit, or none that may be changed.
+    #[error("there is no limit `{0}`; those that may be changed are {all}", all = Name::ALL.map(Name::as_str).join(", "))]
+    Name(String),
+    /// The number is none.
+    #[error("`{0}` is not a whole number, perhaps with k, M or G after it")]
+    Number(String),
+}
+
+impl FromStr for LimitChange {
+    type Err = LimitChangeError;
+
+    fn from_str(text: &str) -> Result<Self, LimitChangeError> {
+        let (name, number) = text.split_once('=').ok_or(LimitChangeError::Form)?;
+        let known = Name::ALL.into_iter().find(|known| known.as_str() == name);
+        let name = known.ok_or_else(|| LimitChangeError::Name(name.to_owned()))?;
+        let value = whole_number(number).ok_or_else(|| LimitChangeError::Number(number.to_owned()))?;
+        Ok(Self { name, value })
+    }
+}
+
+/// A whole number, perhaps of thousands, millions or billions.
+fn whole_number(text: &str) -> Option<u64> {
+    let (digits, unit) = match text.chars().next_back()? {
+        'k' => (&text[..text.len() - 1], 1_000),
+        'M' => (&text[..text.len() - 1], 1_000_000),
+        'G' => (&text[..text.len() - 1], 1_000_000_000),
+        _ => (text, 1),
+    };
+    let is_plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+    digits.parse::<u64>().ok().filter(|_| is_plain)?.checked_mul(unit)
+}
+
+impl Limits {
+    /// Changes one limit.
+    pub fn change(&mut self, LimitChange { name, value }: LimitChange) {
+        let size = usize::try_from(value).unwrap_or(usize::MAX);
+        match name {
+            Name::FileBytes => self.file_bytes = value,
+            Name::Triangles => self.triangles = size,
+            Name::Memory => self.memory = value,
+            Name::TexturePixels => self.texture_pixels = value,
+            Name::Errors => self.errors = size,
+        }
+    }
+
+    /// The limits that may be changed by [`LimitChange`]: name, value and meaning.
+    pub fn listed(&self) -> [(&'static str, u64, &'static str); 5] {
+        Name::ALL.map(|name| {
+            let value = match name {
+                Name::FileBytes => self.file_bytes,
+                Name::Triangles => self.triangles as u64,
+                Name::Memory => self.memory,
+                Name::TexturePixels => self.texture_pixels,
+                Name::Errors => self.errors as u64,
+            };
+            (name.as_str(), value, name.meaning())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_limit_that_is_listed_can_be_changed() {
+        let mut limits = Limits::default();
+        for (name, _, _) in Limits::default().listed() {
+            limits.change(format!("{name}=12k").parse().unwrap());
+        }
+        assert!(limits.listed().iter().all(|&(_, value, _)| value == 12_000));
+    }
+
+    #[test]
+    fn what_is_no_change_says_why() {
+        let told = |text: &str| text.parse::<LimitChange>().unwrap_err().to_string();
+        assert_eq!(told("triangles"), "must be a name and a number, as in triangles=500M");
+        assert!(
+            told("triangle=3").starts_with("there is no limit `triangle`; those that may be changed are ")
+        );
+        for junk in ["", "-1", "+1", "1.5", "1e9", "k", "2 G", "99999999999999999999", "99999999999999G"] {
+            assert!(told(&format!("memory={junk}")).contains("is not a whole number"), "{junk}");
+        }
+        assert_eq!("memory=2G".parse(), Ok(LimitChange { name: Name::Memory, value: 2_000_000_000 }));
     }
 }

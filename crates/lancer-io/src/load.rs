@@ -4,6 +4,7 @@ use crate::diagnostics::{Diagnostic, LoadError};
 use crate::image::load_texture;
 use crate::limits::Limits;
 use crate::model::{self, ModelOptions};
+use crate::progress::ReadProgress;
 use crate::resolver::Resolver;
 use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
@@ -20,6 +21,8 @@ pub struct LoadOptions {
     pub allow_outside: bool,
     /// How its models are read, where a scene file does not say it of one.
     pub model: ModelOptions,
+    /// Hears how far the reading of each model is.
+    pub progress: ReadProgress,
     /// What is to be read in place of what it says.
     pub overrides: Vec<Override>,
 }
@@ -50,7 +53,8 @@ pub const SCENE_EXTENSIONS: [&str; 3] = ["yaml", "yml", "json"];
 /// # Errors
 /// All that is wrong with the file and with what it refers to.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
-    let resolver = Resolver::for_file(path, options.allow_outside, options.limits);
+    let mut resolver = Resolver::for_file(path, options.allow_outside, options.limits);
+    resolver.progress = options.progress.clone();
     if is_scene_file(path) {
         let bytes = resolver.read(path)?;
         let mut assets = Files { resolver, options: options.model };

@@ -3,6 +3,7 @@
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::package::Packed;
+use crate::progress::ReadProgress;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -17,13 +18,21 @@ pub struct Resolver {
     pub limits: Limits,
     /// The packed file that is being read.
     packed: Option<Arc<Packed>>,
+    /// Hears how far the reading of a model is.
+    pub progress: ReadProgress,
 }
 
 impl Resolver {
     /// A resolver for the file at `path`, which the user named and which may lie anywhere. What it refers to
     /// must lie in its directory or below, symbolic links followed, unless `allow_outside`.
     pub fn for_file(path: &Path, allow_outside: bool, limits: Limits) -> Self {
-        Self { root: directory_of(path), allow_outside, limits, packed: None }
+        Self {
+            root: directory_of(path),
+            allow_outside,
+            limits,
+            packed: None,
+            progress: ReadProgress::default(),
+        }
     }
 
     /// The resolver for what is in a packed file.
@@ -38,6 +47,9 @@ impl Resolver {
     pub fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String> {
         if reference.trim().is_empty() {
             return Err("the path is empty".into());
+        }
+        if reference.len() > LONGEST_REFERENCE {
+            return Err(format!("the path is longer than {LONGEST_REFERENCE} bytes"));
         }
         if let Some(resolved) = self.packed.as_ref().and_then(|packed| packed.resolve(from, reference)) {
             return resolved;
@@ -69,19 +81,25 @@ impl Resolver {
         let failed =
             |error: std::io::Error| LoadError::new(path, format!("cannot be read: {}", reason(&error)));
         // Asked before it is opened: to open a pipe would wait for whoever writes to it.
-        if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        let metadata = std::fs::metadata(path).map_err(failed)?;
+        if !metadata.is_file() {
             return Err(LoadError::new(path, "is not a file"));
         }
         let file = File::open(path).map_err(failed)?;
-        let mut bytes = Vec::new();
         let limit = self.limits.file_bytes;
-        file.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
+        // One more than there should be, so that the end is seen without growing.
+        let mut bytes = Vec::with_capacity(metadata.len().min(limit) as usize + 1);
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
         if bytes.len() as u64 > limit {
-            return Err(Diagnostic::new(path, format!("is longer than {limit} bytes")).into());
+            let error = Diagnostic::new(path, format!("is longer than {limit} bytes"));
+            return Err(error.with_hint("--limit file-bytes=N allows longer ones").into());
         }
         Ok(bytes)
     }
 }
+
+/// As long as the longest path that systems take.
+const LONGEST_REFERENCE: usize = 4096;
 
 /// An operating system's error in its own words, without the number.
 pub fn reason(error: &std::io::Error) -> String {

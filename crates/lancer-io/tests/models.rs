@@ -5,7 +5,7 @@ use lancer_core::geometry::DVec3;
 use lancer_core::scene::{Scene, Shape, Texture};
 use lancer_io::diagnostics::LoadError;
 use lancer_io::limits::Limits;
-use lancer_io::model::{self, Model, ModelOptions, ModelPart};
+use lancer_io::model::{self, Crease, Model, ModelOptions, ModelPart};
 use lancer_io::resolver::Resolver;
 use proptest::prelude::*;
 use std::fmt::Display;
@@ -155,9 +155,117 @@ fn line_ends_tabs_continuations_and_latin_1_are_read() {
 }
 
 #[test]
+fn three_numbers_after_a_position_are_its_colour_in_srgb() {
+    let colored = "v 0 0 0 1 0.5 0\nv 1 0 0 1.0 0 0 1\nv 1 1 0\nf 1 2 3\n";
+    let model = obj(colored).unwrap();
+    let half = lancer_core::color::srgb_to_linear(0.5) as f32;
+    assert_eq!(model.parts[0].mesh.data().colors, [[1.0, half, 0.0], [0.0, 0.0, 1.0], [1.0; 3]]);
+    assert!(model.warnings.is_empty());
+
+    let of_255 = obj("v 0 0 0 255 0 51\nv 1 0 0 0 0 0\nv 1 1 0 300 0 0\nf 1 2 3\n").unwrap();
+    let fifth = lancer_core::color::srgb_to_linear(0.2) as f32;
+    assert_eq!(of_255.parts[0].mesh.data().colors, [[1.0, 0.0, fifth], [0.0; 3], [1.0, 0.0, 0.0]]);
+    assert!(of_255.warnings[0].message.contains("255"));
+
+    for other in ["v 0 0 0 1", "v 0 0 0 1 1", "v 0 0 0 1 1 1 1 1", "v 0 0 0 red 0 0", "v 0 0 0 # 1 1 1"] {
+        let model = obj(format!("{other}\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")).unwrap();
+        assert!(model.parts[0].mesh.data().colors.is_empty(), "{other}");
+    }
+}
+
+#[test]
+fn decimal_commas_are_faults_that_say_so() {
+    let error = obj("v 0,5 0 0\n").unwrap_err();
+    assert_eq!(error.diagnostics[0].message, "`0,5` is not a finite number");
+    assert!(error.diagnostics[0].hint.as_deref().unwrap().contains("decimal point"));
+    assert_eq!(obj("v 0,x 0 0\n").unwrap_err().diagnostics[0].hint, None);
+    let error = ply(PLY_SQUARE.replace("1 1 0", "1,0 1 0")).unwrap_err();
+    assert!(error.diagnostics[0].hint.as_deref().unwrap().contains("decimal point"));
+}
+
+/// Two squares that meet at the edge x = 0, at an angle in degrees, after statements before each.
+fn roof(degrees: f64, first: &str, second: &str) -> String {
+    let (sin, cos) = lancer_core::geometry::portable::sin_cos(degrees.to_radians());
+    let corners =
+        format!("v -1 0 0\nv 0 0 0\nv 0 0 -1\nv -1 0 -1\nv {cos} {} 0\nv {cos} {} -1\n", -sin, -sin);
+    format!("{corners}{first}\nf 1 2 3 4\n{second}\nf 2 5 6 3\n")
+}
+
+/// Whether the edge that two squares share is smooth.
+fn is_smooth(result: Result<Model, LoadError>) -> bool {
+    let model = result.unwrap();
+    let data = model.parts[0].mesh.data();
+    data.positions.len() == 6 && !data.normals.is_empty()
+}
+
+#[test]
+fn faces_without_normals_are_smooth_up_to_an_angle() {
+    assert!(is_smooth(obj(roof(39.0, "", ""))));
+    assert!(!is_smooth(obj(roof(41.0, "", ""))));
+    // The normals at the edge lie half-way between those of the faces.
+    let model = obj(roof(30.0, "", "")).unwrap();
+    let data = model.parts[0].mesh.data();
+    let (sin, cos) = lancer_core::geometry::portable::sin_cos(15_f64.to_radians());
+    let at_edge = data.positions.iter().position(|&position| position == [0.0; 3]).unwrap();
+    for (found, expected) in data.normals[at_edge].iter().zip([sin, cos, 0.0]) {
+        assert!((f64::from(*found) - expected).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn smoothing_groups_decide_where_there_are_any() {
+    assert!(is_smooth(obj(roof(70.0, "s 1", ""))));
+    assert!(!is_smooth(obj(roof(20.0, "s 1", "s 2"))));
+    assert!(!is_smooth(obj(roof(90.0, "s 1", ""))), "boxes in a group stay boxes");
+    assert!(!is_smooth(obj(roof(20.0, "s off", ""))));
+    assert!(!is_smooth(obj(roof(20.0, "s 0", "s 0"))));
+    assert!(!is_smooth(obj(roof(20.0, "s 1", "s off"))));
+}
+
+#[test]
+fn smoothing_goes_across_materials() {
+    let model = obj(roof(30.0, "s 3\nusemtl a", "usemtl b")).unwrap();
+    assert_eq!(model.parts.len(), 2);
+    let normals = |part: &ModelPart| part.mesh.data().normals.clone();
+    let shared =
+        normals(&model.parts[0]).iter().filter(|normal| normals(&model.parts[1]).contains(normal)).count();
+    assert_eq!(shared, 2, "the edge's two ends have one normal each");
+}
+
+#[test]
+fn the_user_decides_before_the_file() {
+    let with = |text: String, degrees: f64| {
+        let files = Files::new().with("m.obj", text);
+        let path = files.path("m.obj");
+        let options = ModelOptions { crease: Crease::from_degrees(degrees) };
+        model::load(&path, &Resolver::for_file(&path, false, Limits::default()), &options)
+    };
+    assert!(is_smooth(with(roof(60.0, "s off", ""), 61.0)));
+    assert!(!is_smooth(with(roof(60.0, "s 1", ""), 59.0)));
+    assert!(!is_smooth(with(roof(1.0, "s 1", ""), 0.0)));
+    let own = roof(60.0, "vn 0 1 0", "").replace("f 1 2 3 4", "f 1//1 2//1 3//1 4//1");
+    let own = with(own, 180.0).unwrap();
+    assert_eq!(own.parts[0].mesh.data().normals[0], [0.0, 1.0, 0.0], "normals of the file stay");
+}
+
+#[test]
+fn a_hole_joined_to_its_outline_stays_a_hole() {
+    // A square of 16 with a hole of 4, as one polygon that goes in and out along the same edge.
+    let outline = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]];
+    for start in 0..outline.len() {
+        let mut corners = outline;
+        corners.rotate_left(start);
+        let vertices = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect::<String>();
+        let model = obj(format!("{vertices}f 1 2 3 4 5 6 7 8 9 10\n")).unwrap();
+        assert!((area(&model) - 12.0).abs() < 1e-9, "from corner {start}: {}", area(&model));
+    }
+}
+
+#[test]
 fn what_is_not_drawn_is_told_once() {
-    let text =
-        format!("{SQUARE}l 1 2\np 1\nl 3 4\ncurv 0 1 1 2 \\\n 3\nsurf 1\nfoo\nbar 1\ns off\nf 1 2 3\n");
+    let text = format!(
+        "{SQUARE}l 1 2\np 1\nl 3 4\ncurv 0 1 1 2 \\\n 3\nsurf 1\nfoo\nbar 1\ncsh rm -rf\ncall x.obj\ns off\nf 1 2 3\n"
+    );
     let warnings = obj(text).unwrap().warnings;
     let told = warnings.iter().map(first_line).collect::<Vec<_>>();
     assert_eq!(
@@ -166,6 +274,7 @@ fn what_is_not_drawn_is_told_once() {
             "model.obj:5:1: points and lines are not drawn: `l` (and 2 more)",
             "model.obj:8:1: free-form geometry is not drawn: `curv` (and 1 more)",
             "model.obj:11:1: `foo` is no statement of OBJ files and is passed over (and 1 more)",
+            "model.obj:13:1: `csh` is not done: a model runs nothing and reads no other model (and 1 more)",
         ]
     );
 }
@@ -281,6 +390,25 @@ fn a_polygon_too_large_to_clip_is_an_error() {
 }
 
 #[test]
+fn memory_is_bounded() {
+    let obj = format!("{SQUARE}{}", "f 1 2 3 4\n".repeat(100));
+    let ply = PLY_SQUARE.replace("face 1", "face 100") + &"4 0 1 2 3\n".repeat(99);
+    let files = Files::new().with("m.obj", obj).with("m.ply", ply);
+    let limits = |memory| Limits { memory, ..Limits::default() };
+    for (name, expected) in [
+        ("m.obj", ":40:1: from here on more than 5000 bytes of memory are needed"),
+        ("m.ply", ": more than 5000 bytes of memory are needed"),
+    ] {
+        let error = files.load_within(name, limits(5000)).unwrap_err();
+        assert_eq!(first_line(&error), format!("{name}{expected}"));
+        assert!(error.to_string().contains("hint: --limit memory=N allows more"));
+        assert!(files.load_within(name, limits(50_000)).is_ok());
+    }
+    let error = error_of(files.load_within("m.ply", limits(50)));
+    assert_eq!(error, "m.ply: more than 50 bytes of memory are needed");
+}
+
+#[test]
 fn triangles_are_bounded() {
     let files = Files::new().with("m.obj", format!("{SQUARE}{}", "f 1 2 3 4\n".repeat(10)));
     let error = error_of(files.load_within("m.obj", Limits { triangles: 9, ..Limits::default() }));
@@ -317,6 +445,21 @@ fn textures_are_found_beside_the_library() {
         assert_eq!((image.width(), image.height()), (1, 1));
         assert_eq!(model.materials[0].diffuse, Rgb::new(0.0, 0.5, 0.0));
     }
+}
+
+#[test]
+fn options_of_a_map_move_the_texture_coordinates_of_its_material_alone() {
+    let files = Files::new()
+        .with(
+            "m.obj",
+            format!("mtllib m.mtl\n{SQUARE}vt 0.5 0.25\nusemtl t\nf 1/1 2/1 3/1\nusemtl u\nf 1/1 2/1 3/1\n"),
+        )
+        .with("m.mtl", "newmtl t\nmap_Kd -s 2 4 -o 0.5 -1 blue.bmp\nnewmtl u\nmap_Kd blue.bmp\n")
+        .with("blue.bmp", blue_bmp());
+    let model = files.load("m.obj").unwrap();
+    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert_eq!(model.parts[0].mesh.data().uvs, [[1.5, 0.0]; 3]);
+    assert_eq!(model.parts[1].mesh.data().uvs, [[0.5, 0.25]; 3]);
 }
 
 #[test]
@@ -431,6 +574,79 @@ fn text_and_both_binary_orders_give_the_same_square() {
         assert_eq!(data.normals, [[0.0, 0.0, 1.0]; 4]);
         assert_eq!(data.uvs[1], [1.0, 0.5]);
     }
+}
+
+#[test]
+fn colours_of_vertices_are_srgb_of_any_type() {
+    let colored = |kind: &str, colors: [&str; 4]| {
+        let header = PLY_SQUARE.split_once("0 0 0\n").unwrap().0.replace(
+            "property float z\n",
+            &format!("property {kind} blue\nproperty float z\nproperty {kind} red\nproperty {kind} green\n"),
+        );
+        let vertex = |(position, color): (&str, &str)| {
+            let (blue, rest) = color.split_once(' ').unwrap();
+            format!("{position} {blue} 0 {rest}\n")
+        };
+        let vertices = ["0 0", "1 0", "1 1", "0 1"].into_iter().zip(colors).map(vertex).collect::<String>();
+        let text = format!("{header}{vertices}4 0 1 2 3\n");
+        ply(text).unwrap()
+    };
+    let fifth = lancer_core::color::srgb_to_linear(0.2) as f32;
+    let expected = [[1.0, 0.0, fifth], [0.0; 3], [1.0; 3], [0.0, 0.0, 1.0]];
+    for (kind, colors) in [
+        ("uchar", ["51 255 0", "0 0 0", "255 255 255", "255 0 0"]),
+        ("int", ["51 255 0", "0 0 0", "255 255 999", "255 -3 0"]),
+        ("ushort", ["13107 65535 0", "0 0 0", "65535 65535 65535", "65535 0 0"]),
+        ("float", ["0.2 1 0", "0 0 0", "1 1 1", "1 -1 0"]),
+        ("double", ["51 255 0", "0 0 0", "255 255 255", "255 0 0"]),
+    ] {
+        let model = colored(kind, colors);
+        let found = &model.parts[0].mesh.data().colors;
+        for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((found - expected).abs() < 1e-6, "{kind}: {found} is not {expected}");
+        }
+        assert_eq!(model.warnings.len(), usize::from(kind == "double"), "{kind}");
+    }
+}
+
+#[test]
+fn a_header_line_that_lost_its_keyword_is_passed_over() {
+    let model = ply(PLY_SQUARE.replace("comment made by hand", "Created by hand, property of all")).unwrap();
+    assert_eq!(model.triangle_count(), 2);
+    let told = first_line(&model.warnings[0]);
+    assert_eq!(told, "model.ply:3:1: `Created` is not known in a PLY header and is passed over");
+}
+
+#[test]
+fn what_a_ply_has_that_is_not_drawn_is_told() {
+    let text = PLY_SQUARE
+        .replace("property float z\n", "property float z\nproperty uchar alpha\n")
+        .replace("vertex_indices\n", "vertex_indices\nproperty uchar red\n")
+        .replace(
+            "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3",
+            "0 0 0 255\n1 0 0 254\n1 1 0 0\n0 1 0 255\n4 0 1 2 3 9",
+        );
+    let told = ply(text).unwrap().warnings.iter().map(first_line).collect::<Vec<_>>();
+    assert_eq!(
+        told,
+        [
+            "model.ply: colours of faces are not drawn, only those of vertices",
+            "model.ply: alpha is not drawn: 2 vertices are not opaque",
+        ]
+    );
+}
+
+#[test]
+fn meshes_without_normals_are_smooth_across_seams() {
+    // A bent strip whose vertices are written twice along the bend, as for two pieces of a texture.
+    let text = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
+        property float s\nproperty float t\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n\
+        -1 0 0 0 0\n0 0 0 1 0\n0 0 -1 1 1\n-1 0 -1 0 1\n0 0 0 0 0\n1 -0.5 0 1 0\n1 -0.5 -1 1 1\n0 0 -1 0 1\n\
+        4 0 1 2 3\n4 4 5 6 7\n";
+    let data = ply(text).unwrap().parts[0].mesh.data().clone();
+    assert_eq!(data.positions.len(), 8);
+    assert_eq!(data.normals[1], data.normals[4]);
+    assert_ne!(data.normals[0], data.normals[1]);
 }
 
 #[test]

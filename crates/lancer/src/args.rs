@@ -10,8 +10,11 @@ use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
 use lancer_core::simd::InstructionSet;
+use lancer_io::LoadOptions;
 use lancer_io::compare::PIXELS_PER_DEGREE;
 use lancer_io::image::{Compression, ImageFormat};
+use lancer_io::limits::{LimitChange, Limits};
+use lancer_io::model::{Crease, ModelOptions};
 use lancer_io::scene_file::Override;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -208,7 +211,7 @@ pub(crate) struct ThumbnailArgs {
     pub(crate) size: u32,
 
     #[command(flatten)]
-    pub(crate) access: AccessArgs,
+    pub(crate) files: FileArgs,
 }
 
 /// What is larger is no thumbnail.
@@ -327,15 +330,51 @@ pub(crate) struct ReadingArgs {
     pub(crate) overrides: Vec<Override>,
 
     #[command(flatten)]
-    pub(crate) access: AccessArgs,
+    pub(crate) files: FileArgs,
 }
 
-/// Which files a scene may name.
+/// What files may do, and how models are read.
 #[derive(Debug, ClapArgs)]
-pub(crate) struct AccessArgs {
+pub(crate) struct FileArgs {
     /// Let the scene name files outside of its own directory
     #[arg(long)]
     pub(crate) allow_outside: bool,
+
+    /// Smooth models without normals across edges of up to this angle; 0 for facets, 180 for no edge at all
+    #[arg(long, value_name = "DEGREES", value_parser = parse_crease)]
+    pub(crate) crease: Option<Crease>,
+
+    /// Let files ask for more, or less, as in `--limit triangles=500M`; may be repeated
+    #[arg(long = "limit", value_name = "NAME=N", long_help = limit_help())]
+    pub(crate) limits: Vec<LimitChange>,
+}
+
+impl FileArgs {
+    /// How files are read.
+    pub(crate) fn load_options(&self) -> LoadOptions {
+        let mut limits = Limits::default();
+        self.limits.iter().for_each(|change| limits.change(*change));
+        LoadOptions {
+            limits,
+            allow_outside: self.allow_outside,
+            model: ModelOptions { crease: self.crease },
+            ..LoadOptions::default()
+        }
+    }
+}
+
+fn limit_help() -> String {
+    let limit = |(name, most, what): (&str, u64, &str)| format!("  {name:<16}{most:>12}  {what}");
+    let all = Limits::default().listed().map(limit).join("\n");
+    format!(
+        "Let files ask for more, or less, as in `--limit triangles=500M`; may be repeated. N is a whole number, \
+         or one with k, M or G after it for thousands, millions and billions. The limits and their defaults:\n\n{all}"
+    )
+}
+
+fn parse_crease(text: &str) -> Result<Crease, String> {
+    let crease = text.parse().ok().and_then(Crease::from_degrees);
+    crease.ok_or_else(|| "must be a number of degrees from 0 to 180".to_owned())
 }
 
 /// `lancer scenes`.
@@ -357,7 +396,7 @@ pub(crate) struct InfoArgs {
     pub(crate) json: bool,
 
     #[command(flatten)]
-    pub(crate) access: AccessArgs,
+    pub(crate) files: FileArgs,
 }
 
 /// `lancer check`.
@@ -367,7 +406,7 @@ pub(crate) struct CheckArgs {
     pub(crate) scene: OsString,
 
     #[command(flatten)]
-    pub(crate) access: AccessArgs,
+    pub(crate) files: FileArgs,
 }
 
 /// `lancer completions`.

@@ -16,7 +16,6 @@ use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
 use lancer_io::image::Metadata;
-use lancer_io::limits::Limits;
 use lancer_io::provenance::{Provenance, SceneHash, record_overrides};
 use std::ffi::OsStr;
 use std::num::NonZero;
@@ -234,12 +233,7 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
 }
 
 pub(crate) fn load_options(reading: ReadingArgs) -> LoadOptions {
-    LoadOptions {
-        limits: Limits::default(),
-        allow_outside: reading.access.allow_outside,
-        overrides: reading.overrides,
-        ..LoadOptions::default()
-    }
+    LoadOptions { overrides: reading.overrides, ..reading.files.load_options() }
 }
 
 pub(crate) fn compile_options(work: &WorkArgs) -> CompileOptions {

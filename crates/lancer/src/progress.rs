@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lancer_core::integrator::RayCounts;
 use lancer_core::render::Tile;
+use lancer_io::progress::ReadProgress;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -29,6 +30,12 @@ impl Progress {
         result
     }
 
+    /// Draws that files are read: how long it takes, and how far it is through a model that is worth a bar.
+    pub(crate) fn reading(&self) -> Reading {
+        let bar = self.start(ProgressBar::no_length(), "{spinner} reading {elapsed}");
+        Reading { bar }
+    }
+
     /// Draws how a render of so many pixels goes on.
     pub(crate) fn pixels(&self, pixels: u64) -> PixelProgress {
         let template = "rendering {percent:>3}% [{bar:30}] {msg}, {eta} left";
@@ -41,12 +48,42 @@ impl Progress {
         // Neither target draws on anything but a terminal.
         let target = if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         bar.set_draw_target(target);
-        // No colours: then there are none to leave out for NO_COLOR.
-        let style =
-            ProgressStyle::with_template(template).expect("the templates in this file are well formed");
-        bar.set_style(style.progress_chars("=> "));
+        bar.set_style(style(template));
         bar.enable_steady_tick(REDRAW);
         bar
+    }
+}
+
+/// No colours: then there are none to leave out for NO_COLOR.
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template).expect("the templates in this file are well formed");
+    style.progress_chars("=> ")
+}
+
+/// Draws how far the reading of files is. Cleared when it is dropped.
+pub(crate) struct Reading {
+    bar: ProgressBar,
+}
+
+impl Reading {
+    /// What hears of each model's bytes.
+    pub(crate) fn hears(&self) -> ReadProgress {
+        let bar = self.bar.clone();
+        ReadProgress::new(move |read, total| {
+            if bar.length() != Some(total) {
+                bar.set_length(total);
+                bar.set_style(style(
+                    "reading {percent:>3}% [{bar:30}] {binary_bytes} of {binary_total_bytes}",
+                ));
+            }
+            bar.set_position(read);
+        })
+    }
+}
+
+impl Drop for Reading {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 

@@ -1,6 +1,8 @@
 //! Which scene is meant, and how it is read.
 
+use crate::args::FileArgs;
 use crate::error::Error;
+use crate::progress::Progress;
 use lancer_gallery::BuiltinScene;
 use lancer_io::diagnostics::{Diagnostic, LoadError};
 use lancer_io::provenance::SceneSource;
@@ -83,6 +85,15 @@ impl fmt::Display for Source {
             Self::File(path) => path.display().fmt(f),
         }
     }
+}
+
+/// Reads the scene as the flags say, and draws how far that is.
+///
+/// # Errors
+/// All that is wrong with the files.
+pub(crate) fn read(source: &Source, files: &FileArgs) -> Result<Loaded, LoadError> {
+    let reading = Progress::new(false).reading();
+    source.load(&LoadOptions { progress: reading.hears(), ..files.load_options() })
 }
 
 fn not_found(typed: &OsStr) -> Error {

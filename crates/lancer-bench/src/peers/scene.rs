@@ -158,7 +158,8 @@ impl Picture {
                 Form::Cube => json!("cube"),
                 Form::Cylinder { capped } => json!({"cylinder": {"capped": capped}}),
                 Form::Plane => json!("plane"),
-                Form::Mesh(mesh) => json!({"mesh": mesh_file(mesh)}),
+                // The others draw facets where there are no normals.
+                Form::Mesh(mesh) => json!({"mesh": {"file": mesh_file(mesh), "crease": 0}}),
             };
             json!({
                 "shape": shape,

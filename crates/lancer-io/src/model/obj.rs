@@ -2,9 +2,10 @@
 //!
 //! In: the bytes of a file. Out: one mesh for each material, in the order in which the file first uses them;
 //! where only some faces of a material have normals at all corners, those without are a second mesh of flat
-//! facets. Objects and groups (`o`, `g`) only name parts; smoothing groups (`s`) and display attributes are
-//! passed over, vertex weights and colours too. Free-form geometry, points and lines are told once and left
-//! out. Names run to the end of the line and may hold blanks and `#`.
+//! facets. Faces without normals are smooth within their smoothing group (`s`), and where the file names none, up
+//! to an angle. Objects and groups (`o`, `g`) only name parts; display attributes and weights of vertices are passed
+//! over. Free-form geometry, points and lines are told once and left out. Names run to the end of the line and may
+//! hold blanks and `#`. Three numbers after a position are a colour, encoded in sRGB: an extension by scanners.
 //!
 //! The parser is our own since readers that exist give no line for an error, let NaN pass, open any file that
 //! `mtllib` names, and refuse text that is not UTF-8.
@@ -12,12 +13,13 @@
 //! Source: Alias Wavefront, "Advanced Visualizer" manual, appendix B1.
 
 use super::mtl::MaterialLibrary;
-use super::polygons::{Corner, NONE, Polygons};
+use super::polygons::{COLORS_OF_255, Corner, NONE, Polygons, Smoothing, UvPlacement};
 use super::report::{PassedOver, Report};
-use super::text::{Cursor, Reference, Source, Word, decode};
+use super::text::{Cursor, Reference, Source, Word, decode, not_a_number, quoted};
 use super::{Model, ModelOptions, ModelPart, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
+use crate::progress::Pace;
 use crate::resolver::Resolver;
 use lancer_core::geometry::DVec3;
 use std::collections::HashMap;
@@ -32,18 +34,25 @@ pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> 
         return Err(error.with_hint("save it as UTF-8").into());
     }
     let source = Source { path, bytes: &bytes };
-    let mut parser = Parser::new(source, resolver.limits);
+    let mut parser = Parser::new(source, resolver);
     parser.parse();
     let Obj { mut polygons, groups, libraries, object, mut warnings } = parser.finish()?;
 
     let names = groups.iter().map(|group| group.as_deref());
     let library = MaterialLibrary::load(&libraries, source, names, resolver, &mut warnings);
+    // The file is no longer needed, and what follows needs the memory.
+    drop(bytes);
     polygons.smooth(options.crease);
+    let material_of = |group: &Option<String>| group.as_deref().and_then(|name| library.index_of(name));
+    let placement = |material: Option<usize>| {
+        material.map_or(UvPlacement::IDENTITY, |material| library.placements[material])
+    };
+    polygons.placements = groups.iter().map(|group| placement(material_of(group))).collect();
     let meshes = polygons.into_meshes().map_err(|error| LoadError::new(path, error.to_string()))?;
     let fallback = object.unwrap_or_else(|| name_of(path));
     let part = |(group, mesh): (u32, _)| {
         let name = groups[group as usize].as_deref();
-        let material = name.and_then(|name| library.index_of(name));
+        let material = material_of(&groups[group as usize]);
         ModelPart { name: name.unwrap_or(&fallback).to_owned(), mesh: Arc::new(mesh), material }
     };
     Ok(Model {
@@ -74,6 +83,7 @@ enum LeftOut {
     FreeForm,
     PointsAndLines,
     SmallFaces,
+    Commands,
     Unknown,
 }
 
@@ -83,6 +93,9 @@ impl LeftOut {
             Self::FreeForm => format!("free-form geometry is not drawn: `{keyword}`"),
             Self::PointsAndLines => format!("points and lines are not drawn: `{keyword}`"),
             Self::SmallFaces => "a face of fewer than 3 corners is not drawn".to_owned(),
+            Self::Commands => {
+                format!("`{keyword}` is not done: a model runs nothing and reads no other model")
+            }
             Self::Unknown => format!("`{keyword}` is no statement of OBJ files and is passed over"),
         }
     }
@@ -116,6 +129,7 @@ struct ForwardIndex {
 struct Parser<'a> {
     source: Source<'a>,
     limits: Limits,
+    pace: Pace,
     cursor: Cursor<'a>,
     report: Report,
     polygons: Polygons,
@@ -130,10 +144,12 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(source: Source<'a>, limits: Limits) -> Self {
+    fn new(source: Source<'a>, resolver: &Resolver) -> Self {
+        let limits = resolver.limits;
         Self {
             source,
             limits,
+            pace: resolver.progress.through(source.bytes.len()),
             cursor: Cursor::new(source.bytes, 0),
             report: Report::new(limits.errors),
             polygons: Polygons::default(),
@@ -156,9 +172,10 @@ impl<'a> Parser<'a> {
         while let Some(keyword) = self.cursor.first_word() {
             self.statement(keyword);
             self.cursor.skip_line();
-            if self.is_too_large() {
-                let most = self.limits.triangles;
-                self.error(keyword, format!("from here on there are more than {most} triangles"));
+            self.pace.at(self.cursor.offset());
+            if let Some(excess) = self.polygons.excess(&self.limits) {
+                let error = self.source.diagnostic(keyword.offset, format!("from here on {excess}"));
+                self.report.error(|| error.with_hint(excess.hint()));
                 return;
             }
         }
@@ -174,8 +191,10 @@ impl<'a> Parser<'a> {
             b"usemtl" => self.use_material(),
             b"mtllib" => self.libraries(),
             b"o" | b"g" => self.name(),
-            b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" | b"shadow_obj" | b"trace_obj"
-            | b"usemap" | b"maplib" | b"call" | b"csh" => {}
+            b"s" => self.smoothing_group(),
+            b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" | b"shadow_obj" | b"trace_obj"
+            | b"usemap" | b"maplib" => {}
+            b"call" | b"csh" => self.left_out.add(LeftOut::Commands, keyword),
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech" | b"stech" | b"bsp"
             | b"bzp" | b"cdc" | b"cdp" | b"res" => self.left_out.add(LeftOut::FreeForm, keyword),
@@ -188,14 +207,32 @@ impl<'a> Parser<'a> {
         self.report.error(|| self.source.diagnostic(place.offset, message));
     }
 
-    fn is_too_large(&self) -> bool {
-        self.polygons.triangles() > self.limits.triangles || !self.polygons.is_indexable()
-    }
-
     fn position(&mut self, keyword: Word<'a>) {
         // A vertex at fault still counts, lest every later index be at fault too.
         let position = self.numbers::<3>(keyword, 3).unwrap_or_default();
+        let before = self.polygons.positions.len();
         self.polygons.positions.push(DVec3::from_array(position));
+        if let Some(color) = self.color() {
+            // Vertices without one among others that have one are white.
+            self.polygons.colors.resize(before, WHITE);
+            self.polygons.colors.push(color);
+        }
+    }
+
+    /// The colour after a position, `r g b`, perhaps with a weight before it. Anything else there is passed over.
+    fn color(&mut self) -> Option<[f32; 3]> {
+        let mut numbers = [0.0; 4];
+        let mut count = 0;
+        while let Some(word) = self.cursor.word() {
+            *numbers.get_mut(count)? = word.number()?;
+            count += 1;
+        }
+        let [a, b, c, d] = numbers.map(|x| x as f32);
+        match count {
+            3 => Some([a, b, c]),
+            4 => Some([b, c, d]),
+            _ => None,
+        }
     }
 
     fn uv(&mut self, keyword: Word<'a>) {
@@ -215,14 +252,14 @@ impl<'a> Parser<'a> {
         for (i, slot) in numbers.iter_mut().enumerate() {
             let Some(word) = self.cursor.word() else {
                 if i < required {
-                    let keyword_name = decode(keyword.bytes);
+                    let keyword_name = quoted(keyword.bytes);
                     self.error(keyword, format!("`{keyword_name}` needs {required} numbers, there are {i}"));
                     return None;
                 }
                 break;
             };
             let Some(number) = word.number().filter(|x| x.abs() <= f64::from(f32::MAX)) else {
-                self.error(word, format!("`{}` is not a finite number", decode(word.bytes)));
+                self.report.error(|| not_a_number(self.source, word));
                 return None;
             };
             *slot = number;
@@ -258,14 +295,14 @@ impl<'a> Parser<'a> {
         let uv = index(self, Attribute::Uv)?;
         let normal = index(self, Attribute::Normal)?;
         if position == NONE || fields.next().is_some() {
-            return Err(format!("`{}` is not a corner as v, v/vt, v//vn or v/vt/vn", decode(word.bytes)));
+            return Err(format!("`{}` is not a corner as v, v/vt, v//vn or v/vt/vn", quoted(word.bytes)));
         }
         Ok(Corner { position, uv, normal })
     }
 
     /// The place in its array that an index means: 1 is the first, -1 the last one read so far.
     fn index(&mut self, digits: &[u8], attribute: Attribute, word: Word) -> Result<u32, String> {
-        let written = integer(digits).ok_or_else(|| format!("`{}` is not a whole number", decode(digits)))?;
+        let written = integer(digits).ok_or_else(|| format!("`{}` is not a whole number", quoted(digits)))?;
         let count = self.count_of(attribute);
         let noun = attribute.noun();
         if written == 0 {
@@ -300,6 +337,16 @@ impl<'a> Parser<'a> {
         });
     }
 
+    /// `s 3`, or `s off`, which `s 0` means too.
+    fn smoothing_group(&mut self) {
+        let word = self.cursor.word().map_or(&b"off"[..], |word| word.bytes);
+        self.polygons.smoothing = match integer(word) {
+            Some(number) if number > 0 => Smoothing::group(u32::try_from(number).unwrap_or(u32::MAX)),
+            None if word == b"on" => Smoothing::group(1),
+            _ => Smoothing::FACET,
+        };
+    }
+
     fn libraries(&mut self) {
         let rest = self.cursor.rest_of_line();
         let name = |name: &str| Reference { name: name.to_owned(), offset: rest.offset };
@@ -323,6 +370,12 @@ impl<'a> Parser<'a> {
                 self.report.error(|| self.source.diagnostic(forward.offset, message));
             }
         }
+        if !self.polygons.colors.is_empty() {
+            self.polygons.colors.resize(self.polygons.positions.len(), WHITE);
+            if self.polygons.decode_colors() {
+                self.report.warn(Diagnostic::new(self.source.path, COLORS_OF_255));
+            }
+        }
         let left_out = self.left_out.warnings(self.source, LeftOut::message);
         if self.report.is_clean() && self.polygons.triangles() == 0 {
             let error = Diagnostic::new(self.source.path, "holds no face to draw");
@@ -342,6 +395,8 @@ impl<'a> Parser<'a> {
         })
     }
 }
+
+const WHITE: [f32; 3] = [1.0; 3];
 
 fn out_of_range(attribute: Attribute, written: i64, count: usize) -> String {
     let noun = attribute.noun();

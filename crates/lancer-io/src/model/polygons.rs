@@ -7,6 +7,8 @@
 use super::normals::{CornerNormals, Faces, JoinedUpTo, NO_NORMAL, corner_normals, places_of};
 use super::options::Crease;
 use super::triangulate::{MAX_CLIPPED_CORNERS, TooManyCorners, Triangulator};
+use crate::limits::Limits;
+use lancer_core::color::srgb_to_linear;
 use lancer_core::geometry::{Bounds, DVec3};
 use lancer_core::mesh::{Mesh, MeshData, MeshError};
 use std::collections::HashMap;
@@ -42,7 +44,7 @@ impl Smoothing {
     /// Those of its kind that are within the crease angle.
     pub(super) const BY_ANGLE: Self = Self(u32::MAX);
 
-    /// Those of its group, whatever the angle.
+    /// Those of its group that are within [`Crease::IN_GROUP`].
     pub(super) fn group(number: u32) -> Self {
         Self(number.clamp(1, u32::MAX - 1))
     }
@@ -51,6 +53,30 @@ impl Smoothing {
 impl Default for Smoothing {
     fn default() -> Self {
         Self::BY_ANGLE
+    }
+}
+
+/// Where an image lies on a mesh: the mesh's texture coordinates become the image's by scaling, then by adding an
+/// offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct UvPlacement {
+    pub(super) scale: [f64; 2],
+    pub(super) offset: [f64; 2],
+}
+
+impl UvPlacement {
+    /// As most lie.
+    pub(super) const IDENTITY: Self = Self { scale: [1.0; 2], offset: [0.0; 2] };
+
+    pub(super) fn apply(&self, uv: [f32; 2]) -> [f32; 2] {
+        if *self == Self::IDENTITY {
+            return uv;
+        }
+        std::array::from_fn(|axis| {
+            let placed = f64::from(uv[axis]) * self.scale[axis] + self.offset[axis];
+            // Two large numbers may give more than single precision holds.
+            placed.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+        })
     }
 }
 
@@ -65,6 +91,8 @@ pub(super) struct Polygons {
     /// Of unit length, or zero where the file's was zero.
     pub(super) normals: Vec<[f32; 3]>,
     pub(super) corners: Vec<Corner>,
+    /// For each group where its image lies; those beyond the end lie as most do.
+    pub(super) placements: Vec<UvPlacement>,
     /// How faces are smoothed that are ended from now on.
     pub(super) smoothing: Smoothing,
     faces: Vec<Face>,
@@ -74,11 +102,39 @@ pub(super) struct Polygons {
 /// What keeps polygons from being meshes.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PolygonError {
-    #[error("face {face} is concave and has {corners} corners; the most are {MAX_CLIPPED_CORNERS}")]
+    #[error(
+        "face {face} is concave and has {corners} corners; the most are {MAX_CLIPPED_CORNERS}, and fewer for many such \
+         faces"
+    )]
     TooManyCorners { face: usize, corners: usize },
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
+
+/// What a file has too much of, with the most that it may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(super) enum Excess {
+    #[error("there are more than {0} triangles")]
+    Triangles(usize),
+    #[error("more than {0} bytes of memory are needed")]
+    Memory(u64),
+    #[error("there is more than 32-bit indices can name")]
+    Indices,
+}
+
+impl Excess {
+    /// What the user can do.
+    pub(super) fn hint(self) -> &'static str {
+        match self {
+            Self::Triangles(_) => "--limit triangles=N allows more",
+            Self::Memory(_) => "--limit memory=N allows more",
+            Self::Indices => "cut the model into several files",
+        }
+    }
+}
+
+/// The warning that [`Polygons::decode_colors`] asks for.
+pub(super) const COLORS_OF_255: &str = "colours of vertices go beyond 1: all are taken as fractions of 255";
 
 /// Meshes with their groups, and the point that their vertices are relative to.
 pub(super) struct Meshes {
@@ -112,6 +168,44 @@ impl Polygons {
         [self.positions.len(), self.uvs.len(), self.normals.len(), self.corners.len()]
             .iter()
             .all(|&length| length < NONE as usize)
+    }
+
+    /// Decodes the colours, which are encoded in sRGB so far.
+    ///
+    /// Returns whether they were fractions of 255 instead of 1, as those of some programs are.
+    pub(super) fn decode_colors(&mut self) -> bool {
+        let of_255 = self.colors.as_flattened().iter().any(|&channel| channel > 1.0);
+        let most = if of_255 { 255.0 } else { 1.0 };
+        for channel in self.colors.as_flattened_mut() {
+            *channel = srgb_to_linear((f64::from(*channel) / most).clamp(0.0, 1.0)) as f32;
+        }
+        of_255
+    }
+
+    /// What there is too much of, if anything.
+    pub(super) fn excess(&self, limits: &Limits) -> Option<Excess> {
+        if self.triangles > limits.triangles {
+            return Some(Excess::Triangles(limits.triangles));
+        }
+        if self.peak_bytes() > limits.memory {
+            return Some(Excess::Memory(limits.memory));
+        }
+        (!self.is_indexable()).then_some(Excess::Indices)
+    }
+
+    /// About the most bytes that are taken until the meshes are made: what is held, and beside it what smoothing
+    /// needs, which is more than the meshes themselves.
+    fn peak_bytes(&self) -> u64 {
+        const FOR_A_POSITION: usize = size_of::<DVec3>() + 52;
+        const FOR_A_CORNER: usize = size_of::<Corner>() + 12;
+        const FOR_A_FACE: usize = size_of::<Face>() + size_of::<DVec3>();
+        let bytes = self.positions.len() * FOR_A_POSITION
+            + self.colors.len() * size_of::<[f32; 3]>()
+            + self.uvs.len() * size_of::<[f32; 2]>()
+            + self.normals.len() * size_of::<[f32; 3]>()
+            + self.corners.len() * FOR_A_CORNER
+            + self.faces.len() * FOR_A_FACE;
+        bytes as u64
     }
 
     /// Gives faces without a normal at every corner smooth ones: up to `crease`, or without it as each face's
@@ -159,7 +253,7 @@ impl Polygons {
         let parts = self.parts_of_faces();
         for faces in in_order(&parts).chunk_by(|&a, &b| parts[a as usize] == parts[b as usize]) {
             let Part { group, facets } = parts[faces[0] as usize];
-            meshes.push((group, builder.build(faces, !facets)?));
+            meshes.push((group, builder.build(group, faces, !facets)?));
         }
         Ok(Meshes { meshes, origin })
     }
@@ -214,6 +308,7 @@ struct Surface<'a> {
     polygons: &'a Polygons,
     crease: Option<Crease>,
     joined_up_to: JoinedUpTo,
+    joined_in_group: JoinedUpTo,
     origin: DVec3,
     /// For each position its place; positions that are written twice are one place.
     places: Vec<u32>,
@@ -225,8 +320,9 @@ impl<'a> Surface<'a> {
     /// The surface without its places, which take time to find.
     fn new(polygons: &'a Polygons, crease: Option<Crease>) -> Self {
         let joined_up_to = JoinedUpTo::new(crease.unwrap_or(Crease::DEFAULT));
+        let joined_in_group = JoinedUpTo::new(Crease::IN_GROUP);
         let (places, positions) = (Vec::new(), Vec::new());
-        Self { polygons, crease, joined_up_to, origin: DVec3::ZERO, places, positions }
+        Self { polygons, crease, joined_up_to, joined_in_group, origin: DVec3::ZERO, places, positions }
     }
 
     fn with_places(self) -> Self {
@@ -272,7 +368,9 @@ impl Faces for Surface<'_> {
         let [a, b] = [a, b].map(|face| self.polygons.faces[face as usize].smoothing);
         match self.crease {
             Some(_) => self.joined_up_to.holds(cosine),
-            None => a == b && (a != Smoothing::BY_ANGLE || self.joined_up_to.holds(cosine)),
+            None if a != b => false,
+            None if a == Smoothing::BY_ANGLE => self.joined_up_to.holds(cosine),
+            None => self.joined_in_group.holds(cosine),
         }
     }
 }
@@ -330,8 +428,8 @@ impl<'a> MeshBuilder<'a> {
         Self { polygons, origin, vertices, triangulator: Triangulator::default() }
     }
 
-    /// The mesh of some faces, all with normals or all without.
-    fn build(&mut self, faces: &[u32], smooth: bool) -> Result<Mesh, PolygonError> {
+    /// The mesh of some faces of a group, all with normals or all without.
+    fn build(&mut self, group: u32, faces: &[u32], smooth: bool) -> Result<Mesh, PolygonError> {
         let polygons = self.polygons;
         let mut indices = Vec::with_capacity(faces.len());
         let (mut vertices, mut points) = (Vec::new(), Vec::new());
@@ -349,18 +447,21 @@ impl<'a> MeshBuilder<'a> {
             })?;
             indices.extend(triangles.iter().map(|triangle| triangle.map(|i| vertices[i as usize])));
         }
-        Ok(Mesh::new(self.mesh_data(smooth, indices))?)
+        Ok(Mesh::new(self.mesh_data(group, smooth, indices))?)
     }
 
     /// The arrays of the vertices collected, which are then forgotten.
-    fn mesh_data(&mut self, smooth: bool, indices: Vec<[u32; 3]>) -> MeshData {
+    fn mesh_data(&mut self, group: u32, smooth: bool, indices: Vec<[u32; 3]>) -> MeshData {
         let (polygons, origin) = (self.polygons, self.origin);
         let corners = self.vertices.take();
         let position = |corner: &Corner| {
             (polygons.positions[corner.position as usize] - origin).to_array().map(|x| x as f32)
         };
         let normal = |corner: &Corner| polygons.normals[corner.normal as usize];
-        let uv = |corner: &Corner| polygons.uvs.get(corner.uv as usize).copied().unwrap_or_default();
+        let placement = polygons.placements.get(group as usize).unwrap_or(&UvPlacement::IDENTITY);
+        let uv = |corner: &Corner| {
+            polygons.uvs.get(corner.uv as usize).map_or([0.0; 2], |&uv| placement.apply(uv))
+        };
         let color = |corner: &Corner| polygons.colors[corner.position as usize];
         let has_colors = !polygons.colors.is_empty();
         let has_uvs = corners.iter().any(|corner| corner.uv != NONE);

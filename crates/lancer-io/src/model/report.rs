@@ -1,6 +1,6 @@
 //! What a loader has to say about one file: errors up to a bound, and warnings.
 
-use super::text::{Source, Word, decode};
+use super::text::{Source, Word, quoted};
 use crate::diagnostics::{Diagnostic, LoadError};
 use std::path::Path;
 
@@ -78,7 +78,7 @@ impl<'a, Kind: Copy + Eq> PassedOver<'a, Kind> {
     pub(super) fn warnings(&self, source: Source, message: impl Fn(Kind, &str) -> String) -> Vec<Diagnostic> {
         let warning = |&(kind, word, count): &(Kind, Word, usize)| {
             let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
-            source.diagnostic(word.offset, message(kind, &decode(word.bytes)) + &more)
+            source.diagnostic(word.offset, message(kind, &quoted(word.bytes)) + &more)
         };
         self.found.iter().map(warning).collect()
     }

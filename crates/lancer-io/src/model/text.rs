@@ -50,6 +50,15 @@ pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
+/// Text to be quoted in a message: what is far longer than a person writes is cut off.
+pub(super) fn quoted(bytes: &[u8]) -> Cow<'_, str> {
+    const LONGEST: usize = 80;
+    match bytes.get(..LONGEST) {
+        Some(start) if bytes.len() > LONGEST => format!("{}...", String::from_utf8_lossy(start)).into(),
+        _ => decode(bytes),
+    }
+}
+
 /// Bytes between blanks, and where they stand in the file.
 #[derive(Clone, Copy)]
 pub(super) struct Word<'a> {
@@ -63,6 +72,19 @@ impl Word<'_> {
     pub(super) fn number(&self) -> Option<f64> {
         let number = std::str::from_utf8(self.bytes).ok()?.parse::<f64>().ok()?;
         number.is_finite().then_some(number)
+    }
+}
+
+/// The error that a word is no number that single precision can hold.
+pub(super) fn not_a_number(source: Source, word: Word) -> Diagnostic {
+    let text = quoted(word.bytes);
+    let error = source.diagnostic(word.offset, format!("`{text}` is not a finite number"));
+    let is_with_comma =
+        text.contains(',') && Word { bytes: text.replace(',', ".").as_bytes(), ..word }.number().is_some();
+    if is_with_comma {
+        error.with_hint("numbers are written with a decimal point, in every language")
+    } else {
+        error
     }
 }
 
@@ -211,6 +233,12 @@ mod tests {
         assert_eq!(at.to_string(), "f:3:4: m\n  3 | éé x\n    |    ^");
         let latin1 = Source { path: Path::new("f"), bytes: b"\xe9\xe9 x" };
         assert_eq!(latin1.diagnostic(3, "m").to_string(), "f:1:4: m\n  1 | éé x\n    |    ^");
+    }
+
+    #[test]
+    fn quotations_are_short() {
+        assert_eq!(quoted(&[b'x'; 80]), "x".repeat(80));
+        assert_eq!(quoted(&[b'x'; 1 << 20]), "x".repeat(80) + "...");
     }
 
     #[test]

@@ -11,6 +11,10 @@ use lancer_core::geometry::{DVec2, DVec3};
 /// half a second. Polygons in which a fan will do have no bound.
 pub(super) const MAX_CLIPPED_CORNERS: usize = 1 << 14;
 
+/// The most that all polygons of a file may need together, as the sum of the squares of their corners: some two
+/// seconds, and more than a thousand polygons of a thousand corners.
+const MOST_WORK: u64 = 1 << 30;
+
 /// A polygon that cannot be cut into triangles in reasonable time.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct TooManyCorners;
@@ -23,6 +27,8 @@ pub(super) struct Triangulator {
     next: Vec<u32>,
     blunt: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// The sum of the squares of the corners of those whose ears were clipped.
+    work: u64,
 }
 
 impl Triangulator {
@@ -38,10 +44,12 @@ impl Triangulator {
         }
         if count <= 3 || self.fan_covers() {
             self.triangles.extend((2..count).map(|i| [0, i - 1, i]));
-        } else if corners.len() <= MAX_CLIPPED_CORNERS {
-            self.clip_ears();
         } else {
-            return Err(TooManyCorners);
+            self.work += u64::from(count) * u64::from(count);
+            if corners.len() > MAX_CLIPPED_CORNERS || self.work > MOST_WORK {
+                return Err(TooManyCorners);
+            }
+            self.clip_ears();
         }
         Ok(&self.triangles)
     }
@@ -232,6 +240,17 @@ mod tests {
         assert!(triangulator.triangulate(&parabola(1.0)).is_ok());
         let zigzag = (0..count).map(|i| DVec3::new(f64::from(i), f64::from(i % 2), 0.0)).collect::<Vec<_>>();
         assert_eq!(triangulator.triangulate(&zigzag).unwrap_err(), TooManyCorners);
+    }
+
+    #[test]
+    fn many_large_polygons_are_bounded_together() {
+        let corners = 1_u32 << 11;
+        let zigzag =
+            (0..corners).map(|i| DVec3::new(f64::from(i), f64::from(i % 2), 0.0)).collect::<Vec<_>>();
+        let mut triangulator = Triangulator { work: MOST_WORK - 3 * (1 << 22), ..Triangulator::default() };
+        assert!((0..3).all(|_| triangulator.triangulate(&zigzag).is_ok()));
+        assert_eq!(triangulator.triangulate(&zigzag).unwrap_err(), TooManyCorners);
+        assert!(triangulator.triangulate(&zigzag[..3]).is_ok());
     }
 
     proptest! {

@@ -16,6 +16,8 @@ use std::sync::Arc;
 pub(crate) struct Shelf {
     pub(crate) models_read: usize,
     pub(crate) textures_read: usize,
+    /// What was said of how each model is read.
+    pub(crate) options: Vec<ModelOptions>,
 }
 
 impl Assets for Shelf {
@@ -28,8 +30,9 @@ impl Assets for Shelf {
         }
     }
 
-    fn model(&mut self, scene: &mut Scene, path: &Path, _: &ModelOptions) -> Result<Model, LoadError> {
+    fn model(&mut self, scene: &mut Scene, path: &Path, options: &ModelOptions) -> Result<Model, LoadError> {
         self.models_read += 1;
+        self.options.push(*options);
         if path.ends_with("broken.obj") {
             return Err(Diagnostic::new(path, "a face has 2 corners").at(7, 3).into());
         }

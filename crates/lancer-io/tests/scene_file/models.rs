@@ -2,6 +2,7 @@
 
 use crate::common::{Shelf, drawn, load_with, the_error};
 use lancer_core::scene::{Scene, Shape};
+use lancer_io::model::Crease;
 use std::sync::Arc;
 
 fn load(text: &str) -> (Scene, Shelf) {
@@ -55,6 +56,34 @@ objects:
     );
     let name = |name: &str| Some(name.to_owned());
     assert_eq!(materials(&scene), [name("fur"), name("blue"), name("red"), name("blue")]);
+}
+
+#[test]
+fn a_model_is_read_once_for_each_crease_angle_that_it_is_asked_with() {
+    let (_, shelf) = load(
+        "
+format: 1
+ambient: 1
+objects:
+  - {shape: {mesh: bunny.obj}}
+  - {shape: {mesh: {file: bunny.obj}}}
+  - {shape: {mesh: {file: bunny.obj, crease: 30}}}
+  - {shape: {mesh: {crease: 30.0, file: ./bunny.obj}}}
+  - {shape: {mesh: {file: bunny.obj, crease: 0}}}
+",
+    );
+    let creases = shelf.options.iter().map(|options| options.crease.map(Crease::degrees));
+    assert_eq!(creases.collect::<Vec<_>>(), [None, Some(30.0), Some(0.0)]);
+}
+
+#[test]
+fn faults_of_a_mesh_are_told_where_they_are() {
+    let (error, _) = the_error("format: 1\nobjects:\n  - shape: {mesh: {file: gone.obj, crease: 3}}\n");
+    assert_eq!(error, "3:26: cannot open `gone.obj`: no such file or directory");
+    let (error, _) = the_error("format: 1\nobjects: [{shape: {mesh: {file: bunny.obj, crease: 181}}}]\n");
+    assert_eq!(error, "2:52: crease is 181, must be a number from 0 to 180");
+    let (error, _) = the_error("format: 1\nobjects: [{shape: {mesh: 3}}]\n");
+    assert!(error.starts_with("2:26: "), "{error}");
 }
 
 #[test]

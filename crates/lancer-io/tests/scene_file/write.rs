@@ -24,13 +24,13 @@ fn read(path: &Path) -> Scene {
     load(path, &LoadOptions::default()).unwrap_or_else(|error| panic!("{error}")).scene
 }
 
-/// Far from its origin against its size, with normals of all lengths, one of them 0.
+/// Far from its origin against its size, with normals of all lengths, one of them 0, and colours.
 fn odd_mesh() -> Arc<Mesh> {
     let mesh = Mesh::new(MeshData {
         positions: vec![[1000.1, -0.0, 0.3], [1001.7, 0.0, 0.3], [1000.1, 2.0, 1e-30], [5.0, 5.0, 5.0]],
         normals: vec![[0.0, 0.1, 3.0], [0.0; 3], [1.0, 1.0, 1.0], [0.6, 0.8, 0.0]],
         uvs: vec![[0.1, 0.2], [-3.0, 1e20], [0.5, 0.5], [0.0, 0.0]],
-        colors: Vec::new(),
+        colors: vec![[0.1, 0.2, 0.3], [1.0, 0.0, 1e-30], [0.5, 0.5, 0.5], [0.0, 1.0, 0.7]],
         indices: vec![[2, 0, 1], [0, 1, 1], [0, 2, 1]],
     });
     Arc::new(mesh.unwrap())

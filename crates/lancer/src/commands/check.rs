@@ -2,11 +2,10 @@
 
 use crate::args::CheckArgs;
 use crate::error::Error;
-use crate::source::Source;
+use crate::source::{Source, read};
 use crate::terminal;
 use lancer_core::scene::Scene;
 use lancer_core::world::{CompileOptions, World, WorldStatistics};
-use lancer_io::LoadOptions;
 use lancer_io::diagnostics::LoadError;
 
 /// Prints that all is well, with a summary.
@@ -15,8 +14,7 @@ use lancer_io::diagnostics::LoadError;
 /// All that is wrong with the scene.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), Error> {
     let source = Source::find(Some(&args.scene))?;
-    let loaded =
-        source.load(&LoadOptions { allow_outside: args.access.allow_outside, ..LoadOptions::default() })?;
+    let loaded = read(&source, &args.files)?;
     loaded.warnings.iter().for_each(terminal::tell_warning);
     let world = validated(&loaded.scene).map_err(|faults| LoadError {
         diagnostics: faults.iter().map(|fault| source.diagnostic(fault)).collect(),

@@ -3,7 +3,7 @@
 use crate::args::InfoArgs;
 use crate::error::Error;
 use crate::report::WorldJson;
-use crate::source::Source;
+use crate::source::{Source, read};
 use crate::{json, process, terminal};
 use indicatif::{HumanBytes, HumanCount};
 use lancer_core::camera::Camera;
@@ -11,8 +11,8 @@ use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::geometry::{Bounds, DVec3};
 use lancer_core::scene::{Light, Scene, Settings};
 use lancer_core::world::{CompileOptions, World, WorldStatistics};
+use lancer_io::Loaded;
 use lancer_io::diagnostics::{Diagnostic, LoadError};
-use lancer_io::{LoadOptions, Loaded};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -22,8 +22,7 @@ use std::fmt::Write;
 /// It cannot be read or compiled.
 pub(crate) fn run(args: &InfoArgs) -> Result<(), Error> {
     let source = Source::find(Some(&args.file))?;
-    let options = LoadOptions { allow_outside: args.access.allow_outside, ..LoadOptions::default() };
-    let Loaded { scene, warnings, .. } = source.load(&options)?;
+    let Loaded { scene, warnings, .. } = read(&source, &args.files)?;
     let world = World::compile(&scene, &CompileOptions::default())
         .map_err(|error| LoadError::from(source.diagnostic(error)))?;
     let info = Info { source: &source, scene: &scene, world: &world, warnings: &warnings };

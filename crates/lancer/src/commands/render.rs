@@ -11,8 +11,8 @@ use lancer_core::integrator::RayCounts;
 use lancer_core::render::passes::{Layer, Pass, PassRender, render_passes};
 use lancer_core::render::{CancelToken, Control, Render, RenderError, Tile, render, with_threads};
 use lancer_core::world::World;
-use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::{LoadOptions, Loaded};
 use std::time::{Duration, Instant};
 
 /// Renders, writes, and tells what was done.
@@ -30,7 +30,10 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let progress = Progress::new(job.quiet);
     let mut stages = Stages::default();
 
-    let loaded = timed(&mut stages.load, || progress.during("reading", || setup.source.load(&setup.load)))?;
+    let loaded = timed(&mut stages.load, || {
+        let reading = progress.reading();
+        setup.source.load(&LoadOptions { progress: reading.hears(), ..setup.load.clone() })
+    })?;
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;

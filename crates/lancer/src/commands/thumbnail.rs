@@ -19,7 +19,7 @@ use lancer_io::image::cutout::{Cutout, write_cutout};
 use lancer_io::image::encode::write;
 use lancer_io::image::{ImageFormat, Metadata};
 use lancer_io::showcase::{framing_camera, hide_ground};
-use lancer_io::{LoadOptions, is_scene_file};
+use lancer_io::is_scene_file;
 
 /// The most subpixels along a pixel's side, and what a model gets: its edges are all that is seen of it at first.
 const SAMPLES: u32 = 3;
@@ -35,7 +35,7 @@ const DEPTH: u32 = 6;
 pub(crate) fn run(args: &ThumbnailArgs) -> Result<(), Error> {
     let source = Source::find(Some(&args.scene))?;
     check_writable(&args.output).map_err(|error| Error::output(args.output.display().to_string(), &error))?;
-    let options = LoadOptions { allow_outside: args.access.allow_outside, ..LoadOptions::default() };
+    let options = args.files.load_options();
     let loaded = source.load(&options)?;
     loaded.warnings.iter().for_each(terminal::tell_warning);
     let is_model = matches!(&source, Source::File(path) if !is_scene_file(path));

@@ -95,3 +95,34 @@ fn check_looks_at_cameras_that_nobody_asked_for() {
     sandbox.write("scene.yaml", SCENE.replace("up: [0, 0, -1]", "up: [0, 1, 0]"));
     assert!(sandbox.fails(3, "check scene.yaml").contains("top"));
 }
+
+#[test]
+fn crease_smooths_models_where_the_scene_does_not_say_it_of_one() {
+    let sandbox = Sandbox::new();
+    let mesh_bytes =
+        |line: &str| sandbox.json(&format!("info --json {line}"))["mesh_bytes"].as_u64().unwrap();
+    let facets = mesh_bytes("model.obj");
+    let smooth = mesh_bytes("model.obj --crease 180");
+    assert_eq!(smooth - facets, 4 * 12, "a normal for each of four vertices");
+    for (mesh, expected) in [("model.obj", smooth), ("{file: model.obj, crease: 0}", facets)] {
+        sandbox.write("s.yaml", format!("format: 1\nambient: 1\nobjects: [{{shape: {{mesh: {mesh}}}}}]\n"));
+        assert_eq!(mesh_bytes("s.yaml"), facets);
+        assert_eq!(mesh_bytes("s.yaml --crease 180"), expected, "{mesh}");
+    }
+    assert!(sandbox.fails(2, "check model.obj --crease 181").contains("from 0 to 180"));
+}
+
+#[test]
+fn limits_are_the_users() {
+    let sandbox = Sandbox::new();
+    let told = sandbox.fails(3, "check model.obj --limit triangles=3");
+    assert!(
+        told.contains("more than 3 triangles") && told.contains("--limit triangles=N allows more"),
+        "{told}"
+    );
+    assert!(sandbox.fails(3, "check model.obj --limit memory=100").contains("more than 100 bytes of memory"));
+    assert!(sandbox.fails(3, "check model.obj --limit file-bytes=10").contains("longer than 10 bytes"));
+    sandbox.ok("check model.obj --limit triangles=4 --limit memory=1G");
+    assert!(sandbox.fails(2, "check model.obj --limit triangle=3").contains("those that may be changed are"));
+    assert!(text(&sandbox.ok("check --help").stdout).contains("texture-pixels"));
+}

@@ -3,6 +3,8 @@
 mod compare;
 mod errors;
 mod films;
+#[cfg(target_os = "linux")]
+mod hostile;
 mod inspect;
 #[cfg(unix)]
 mod interrupt;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | Kd | S, with k_d = k_a = d |
 //! | map_Kd | S is the image, with k_d = k_a = d Kd; a black or absent Kd counts as white |
+//! | -s, -o of map_Kd | the texture coordinates of the mesh, times the scale, plus the offset |
 //! | Ka | nothing: most files have 0 or 1 whatever the material, so the ambient light follows S |
 //! | Ks, Ns | k_s = 2 Ks / (Ns + 2), n = Ns, m = 0; no highlight under illum 0 and 1, or for Ns < 1 |
 //! | d, Tr | opacity: d, or else 1 - Tr, or else 1 |

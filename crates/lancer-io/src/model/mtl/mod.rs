@@ -11,7 +11,8 @@ mod parse;
 
 use self::convert::material;
 use self::parse::Definition;
-use super::text::{Reference, Source};
+use super::polygons::UvPlacement;
+use super::text::{Reference, Source, quoted};
 use crate::diagnostics::Diagnostic;
 use crate::image::load_texture;
 use crate::resolver::Resolver;
@@ -32,6 +33,8 @@ const NAMES_TOLD: usize = 5;
 /// The materials that a model uses and that were found.
 pub(super) struct MaterialLibrary {
     pub(super) materials: Vec<Material>,
+    /// For each material where its image lies.
+    pub(super) placements: Vec<UvPlacement>,
     index_by_name: HashMap<String, usize>,
 }
 
@@ -46,16 +49,19 @@ impl MaterialLibrary {
     ) -> Self {
         let libraries = Libraries::read(references, source, resolver, warnings);
         let mut textures = Textures::new(resolver);
-        let mut library = Self { materials: Vec::new(), index_by_name: HashMap::new() };
+        let mut library =
+            Self { materials: Vec::new(), placements: Vec::new(), index_by_name: HashMap::new() };
         let mut undefined = Vec::new();
         for name in names.flatten() {
             let Some((path, definition)) = libraries.definitions.get(name) else {
                 undefined.push(name);
                 continue;
             };
-            let image = definition.map_kd.as_ref().and_then(|map| textures.load(path, map, warnings));
+            let map = definition.map_kd.as_ref();
+            let image = map.and_then(|map| textures.load(path, &map.file, warnings));
             library.index_by_name.insert(name.to_owned(), library.materials.len());
             library.materials.push(material(definition, image));
+            library.placements.push(map.map_or(UvPlacement::IDENTITY, |map| map.placement));
         }
         // Where a library is missing, that has been told, and its materials need not be.
         if !undefined.is_empty() && libraries.all_found {
@@ -71,7 +77,12 @@ impl MaterialLibrary {
 }
 
 fn undefined_message(names: &[&str]) -> String {
-    let told = names.iter().take(NAMES_TOLD).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let told = names
+        .iter()
+        .take(NAMES_TOLD)
+        .map(|name| format!("`{}`", quoted(name.as_bytes())))
+        .collect::<Vec<_>>()
+        .join(", ");
     let more = match names.len().saturating_sub(NAMES_TOLD) {
         0 => String::new(),
         more => format!(" and {more} more"),

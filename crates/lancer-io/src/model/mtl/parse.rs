@@ -3,6 +3,7 @@
 //! In: its bytes. Out: definitions as written, and warnings. It knows nothing of the renderer's materials.
 
 use crate::diagnostics::Diagnostic;
+use crate::model::polygons::UvPlacement;
 use crate::model::report::PassedOver;
 use crate::model::text::{Cursor, Source, Word, decode};
 use lancer_core::Rgb;
@@ -26,15 +27,23 @@ pub(super) struct Definition {
     /// Tf.
     pub(super) filter: Option<Rgb>,
     pub(super) illum: Option<u32>,
-    /// The file that map_Kd names.
-    pub(super) map_kd: Option<String>,
+    pub(super) map_kd: Option<Map>,
+}
+
+/// An image on a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map {
+    /// Its file, as named.
+    pub(super) file: String,
+    /// Where it lies.
+    pub(super) placement: UvPlacement,
 }
 
 /// What a library may hold that is not drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Maps other than map_Kd.
-    Map,
+    /// A map other than map_Kd, and why it is not drawn.
+    Map(&'static str),
     /// Ke.
     Emission,
     /// Options of map_Kd that would change the picture.
@@ -48,7 +57,7 @@ enum Kind {
 impl Kind {
     fn message(self, word: &str) -> String {
         match self {
-            Self::Map => format!("`{word}` is not drawn: the only map that is, is map_Kd"),
+            Self::Map(why) => format!("`{word}` is not drawn: {why}"),
             Self::Emission => format!("`{word}` is not drawn: surfaces do not shine by themselves"),
             Self::MapOption => format!("`{word}` is passed over: the map is used as it is"),
             Self::Malformed => format!("the value of `{word}` cannot be read and is passed over"),
@@ -107,8 +116,11 @@ impl<'a> Parser<'a> {
             b"illum" => definition.illum = Some(self.number()? as u32),
             b"map_kd" => definition.map_kd = Some(self.map()?),
             b"ke" if !self.color()?.is_black() => self.passed_over.add(Kind::Emission, keyword),
-            _ if is_map(lower) => self.passed_over.add(Kind::Map, keyword),
-            _ => {}
+            _ => {
+                if let Some(why) = why_not_drawn(lower) {
+                    self.passed_over.add(Kind::Map(why), keyword);
+                }
+            }
         }
         Some(())
     }
@@ -132,39 +144,51 @@ impl<'a> Parser<'a> {
         Some(Rgb::new(r, g.number()?, self.number()?))
     }
 
-    /// The file name of a map statement, after its options.
-    fn map(&mut self) -> Option<String> {
+    /// A map statement: options, then the file's name.
+    fn map(&mut self) -> Option<Map> {
+        let mut placement = UvPlacement::IDENTITY;
         loop {
             let before = self.cursor.clone();
-            let word = self.cursor.word()?;
-            let Some(values) = values_of_option(word.bytes) else {
-                self.cursor = before;
-                break;
-            };
-            self.skip_values(values);
-            if CHANGES_THE_PICTURE.contains(&word.bytes) {
-                self.passed_over.add(Kind::MapOption, word);
-            }
-        }
-        let name = decode(self.cursor.rest_of_line().bytes).trim_matches('"').to_owned();
-        (!name.is_empty()).then_some(name)
-    }
-
-    fn skip_values(&mut self, values: OptionValues) {
-        match values {
-            OptionValues::Words(count) => (0..count).for_each(|_| {
-                self.cursor.word();
-            }),
-            OptionValues::UpTo3Numbers => {
-                for _ in 0..3 {
-                    let before = self.cursor.clone();
-                    if self.cursor.word().and_then(|word| word.number()).is_none() {
-                        self.cursor = before;
-                        return;
+            let option = self.cursor.word()?;
+            match (option.bytes, values_of_option(option.bytes)) {
+                (b"-s", _) => placement.scale = self.up_to_3_numbers(1.0),
+                (b"-o", _) => placement.offset = self.up_to_3_numbers(0.0),
+                (_, Some(OptionValues::UpTo3Numbers)) => {
+                    self.up_to_3_numbers(0.0);
+                    self.passed_over.add(Kind::MapOption, option);
+                }
+                (_, Some(OptionValues::Words(count))) => {
+                    let first = self.cursor.word();
+                    (1..count).for_each(|_| {
+                        self.cursor.word();
+                    });
+                    let is_off = first.is_some_and(|word| word.bytes == b"off");
+                    if CHANGES_THE_PICTURE.contains(&option.bytes) && !is_off {
+                        self.passed_over.add(Kind::MapOption, option);
                     }
+                }
+                (_, None) => {
+                    self.cursor = before;
+                    break;
                 }
             }
         }
+        let file = decode(self.cursor.rest_of_line().bytes).trim_matches('"').to_owned();
+        (!file.is_empty()).then_some(Map { file, placement })
+    }
+
+    /// The first two of at most three numbers; the third is for solid textures. Those that are absent are `missing`.
+    fn up_to_3_numbers(&mut self, missing: f64) -> [f64; 2] {
+        let mut numbers = [missing; 3];
+        for number in &mut numbers {
+            let before = self.cursor.clone();
+            let Some(found) = self.number() else {
+                self.cursor = before;
+                break;
+            };
+            *number = found;
+        }
+        [numbers[0], numbers[1]]
     }
 }
 
@@ -175,8 +199,8 @@ enum OptionValues {
     UpTo3Numbers,
 }
 
-/// Map options whose absence shows; the others choose a filter or a channel.
-const CHANGES_THE_PICTURE: [&[u8]; 5] = [b"-o", b"-s", b"-t", b"-mm", b"-clamp"];
+/// Map options of a number of words whose absence shows; the others choose a filter or a channel.
+const CHANGES_THE_PICTURE: [&[u8]; 2] = [b"-mm", b"-clamp"];
 
 fn values_of_option(word: &[u8]) -> Option<OptionValues> {
     match word {
@@ -188,8 +212,20 @@ fn values_of_option(word: &[u8]) -> Option<OptionValues> {
     }
 }
 
-fn is_map(lower: &[u8]) -> bool {
-    lower.starts_with(b"map_") || matches!(lower, b"bump" | b"disp" | b"decal" | b"refl" | b"norm")
+/// Why a map other than map_Kd is not drawn; `None` for what is no map.
+fn why_not_drawn(lower: &[u8]) -> Option<&'static str> {
+    Some(match lower {
+        b"map_ka" => "the ambient light follows map_Kd",
+        b"map_ks" | b"map_ns" | b"map_pr" | b"map_pm" | b"map_ps" => {
+            "of a material, only the colour may change over a surface"
+        }
+        b"map_d" | b"map_tr" => "a material is as opaque in one place as in another",
+        b"bump" | b"map_bump" | b"norm" | b"map_kn" | b"disp" | b"map_disp" => "relief is the mesh's alone",
+        b"refl" | b"map_refl" => "a mirror shows the scene",
+        b"map_ke" => "surfaces do not shine by themselves",
+        _ if lower.starts_with(b"map_") || lower == b"decal" => "the only map that is, is map_Kd",
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
@@ -201,8 +237,12 @@ mod tests {
         definitions(Source { path: Path::new("f.mtl"), bytes: text.as_bytes() })
     }
 
-    fn map_of(statement: &str) -> Option<String> {
+    fn placed_map_of(statement: &str) -> Option<Map> {
         parse(&format!("newmtl m\n{statement}\n")).0.remove(0).map_kd
+    }
+
+    fn map_of(statement: &str) -> Option<String> {
+        placed_map_of(statement).map(|map| map.file)
     }
 
     #[test]
@@ -229,12 +269,25 @@ mod tests {
     }
 
     #[test]
+    fn options_scale_and_move_the_map() {
+        let placement = |statement| placed_map_of(statement).unwrap().placement;
+        let placed = placement("map_Kd -s 2 3 1 -o 0.5 -0.25 0 -blendu off a.png");
+        assert_eq!(placed, UvPlacement { scale: [2.0, 3.0], offset: [0.5, -0.25] });
+        assert_eq!(placed.apply([0.25, 1.0]), [1.0, 2.75]);
+        // What is left out is 1 for -s and 0 for -o.
+        let placed = placement("map_Kd -o 0.5 -s 2 a.png");
+        assert_eq!(placed, UvPlacement { scale: [2.0, 1.0], offset: [0.5, 0.0] });
+        assert_eq!(placement("map_Kd a.png"), UvPlacement::IDENTITY);
+    }
+
+    #[test]
     fn what_is_not_drawn_is_told_once_a_kind() {
         let (_, warnings) = parse(
-            "Kd 1 1 1\nnewmtl a\nKd nan 0 0\nKe 1 1 1\nKe 0 0 0\nmap_Bump b.png\nbump b.png\nmap_Kd -s 2 2 a.png\n",
+            "Kd 1 1 1\nnewmtl a\nKd nan 0 0\nKe 1 1 1\nKe 0 0 0\nmap_Bump b.png\nbump b.png\nmap_Kd -clamp on a.png\n\
+             map_Kd -clamp off -mm 0 1 a.png\nmap_d d.png\n",
         );
         let lines = warnings.iter().map(|warning| warning.location.unwrap().line).collect::<Vec<_>>();
-        assert_eq!(lines, [1, 3, 4, 6, 8]);
+        assert_eq!(lines, [1, 3, 4, 6, 8, 10]);
         assert!(
             warnings[3].message.contains("`map_Bump` is not drawn")
                 && warnings[3].message.ends_with("(and 1 more)")

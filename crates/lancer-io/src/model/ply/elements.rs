@@ -4,8 +4,10 @@ use super::header::{Element, Header, Property, PropertyType, Scalar};
 use super::values::Values;
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
-use crate::model::polygons::{Corner, NONE, Polygons};
+use crate::model::polygons::{COLORS_OF_255, Corner, Excess, NONE, Polygons};
 use crate::model::text::Source;
+use crate::progress::Pace;
+use crate::resolver::Resolver;
 use lancer_core::color::srgb_to_linear;
 use lancer_core::geometry::DVec3;
 
@@ -22,21 +24,26 @@ pub(super) struct Reader<'a> {
     has_uvs: bool,
     /// How the colours of vertices are written, if they have any.
     colors: Option<ColorEncoding>,
+    /// How many vertices have an alpha that is less than all.
+    translucent: usize,
     small_faces: usize,
+    pace: Pace,
     warnings: Vec<Diagnostic>,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(source: Source<'a>, limits: Limits) -> Self {
+    pub(super) fn new(source: Source<'a>, resolver: &Resolver) -> Self {
         Self {
             source,
-            limits,
+            limits: resolver.limits,
+            pace: resolver.progress.through(source.bytes.len()),
             polygons: Polygons::default(),
             vertices: 0,
             is_as_stored: false,
             has_normals: false,
             has_uvs: false,
             colors: None,
+            translucent: 0,
             small_faces: 0,
             warnings: Vec::new(),
         }
@@ -75,6 +82,13 @@ impl<'a> Reader<'a> {
             let message = format!("has {} vertices, but no face to draw", self.vertices);
             return Err(LoadError::new(self.source.path, message));
         }
+        if self.colors == Some(ColorEncoding::Fractions) && self.polygons.decode_colors() {
+            self.warn(COLORS_OF_255);
+        }
+        if self.translucent > 0 {
+            let message = format!("alpha is not drawn: {} vertices are not opaque", self.translucent);
+            self.warn(message);
+        }
         if self.small_faces > 0 {
             let message = format!("faces of fewer than 3 corners are not drawn: {}", self.small_faces);
             self.warn(message);
@@ -96,10 +110,9 @@ impl<'a> Reader<'a> {
         self.vertices = element.count;
         self.has_normals = (0..3).all(|axis| has(Role::Normal(axis)));
         self.has_uvs = (0..2).all(|axis| has(Role::Uv(axis)));
-        if (0..3).all(|channel| has(Role::Color(channel))) {
-            let of_role = |property: &&Property| matches!(Role::of(property), Role::Color(_));
-            let scalars = element.properties.iter().filter(of_role).map(|property| scalar_of(property.kind));
-            self.colors = Some(ColorEncoding::of(scalars, self.is_as_stored));
+        let red = element.properties.iter().find(|property| Role::of(property) == Role::Color(0));
+        if let Some(red) = red.filter(|_| (1..3).all(|channel| has(Role::Color(channel)))) {
+            self.colors = Some(ColorEncoding::of(scalar_of(red.kind), self.is_as_stored));
         }
         Ok(())
     }
@@ -107,6 +120,10 @@ impl<'a> Reader<'a> {
     fn read_vertices(&mut self, element: &Element, values: &mut impl Values) -> Result<(), LoadError> {
         let roles = element.properties.iter().map(Role::of).collect::<Vec<_>>();
         // The header has been held against the file's length.
+        let bytes = element.count.saturating_mul(size_of::<DVec3>() as u64);
+        if bytes > self.limits.memory {
+            return Err(self.too_much(Excess::Memory(self.limits.memory)));
+        }
         self.polygons.positions.reserve(element.count as usize);
         for _ in 0..element.count {
             values.begin_element()?;
@@ -117,8 +134,12 @@ impl<'a> Reader<'a> {
                     continue;
                 };
                 *slot = finite(scalar_of(property.kind), values)?;
+                if *role == Role::Alpha && *slot < opaque(scalar_of(property.kind)) {
+                    self.translucent += 1;
+                }
             }
             self.push(vertex);
+            self.pace.at(values.offset());
         }
         Ok(())
     }
@@ -132,7 +153,7 @@ impl<'a> Reader<'a> {
         if self.has_uvs {
             self.polygons.uvs.push(vertex.uv.map(|x| x as f32));
         }
-        if let Some(encoding) = self.colors {
+        if let Some(encoding) = &self.colors {
             self.polygons.colors.push(vertex.color.map(|x| encoding.decode(x)));
         }
     }
@@ -151,6 +172,9 @@ impl<'a> Reader<'a> {
         if element.properties.iter().any(|property| property.name == "texcoord") {
             self.warn("texture coordinates of faces are not read, only those of vertices");
         }
+        if element.properties.iter().any(|property| property.name == "red") {
+            self.warn("colours of faces are not drawn, only those of vertices");
+        }
         let mut indices = Vec::new();
         for _ in 0..element.count {
             values.begin_element()?;
@@ -163,6 +187,7 @@ impl<'a> Reader<'a> {
                 end(self, self.polygons.corners.len(), &indices);
                 self.check_size()?;
             }
+            self.pace.at(values.offset());
         }
         Ok(())
     }
@@ -225,11 +250,20 @@ impl<'a> Reader<'a> {
     }
 
     fn check_size(&self) -> Result<(), LoadError> {
-        if self.polygons.triangles() <= self.limits.triangles && self.polygons.is_indexable() {
-            return Ok(());
-        }
-        let message = format!("has more than {} triangles", self.limits.triangles);
-        Err(LoadError::new(self.source.path, message))
+        self.polygons.excess(&self.limits).map_or(Ok(()), |excess| Err(self.too_much(excess)))
+    }
+
+    fn too_much(&self, excess: Excess) -> LoadError {
+        Diagnostic::new(self.source.path, excess.to_string()).with_hint(excess.hint()).into()
+    }
+}
+
+/// The alpha, written as this type, of what cannot be seen through.
+fn opaque(scalar: Scalar) -> f64 {
+    match scalar {
+        Scalar::F32 | Scalar::F64 => 1.0,
+        Scalar::U16 => f64::from(u16::MAX),
+        _ => 255.0,
     }
 }
 
@@ -243,6 +277,7 @@ enum Role {
     Normal(usize),
     Uv(usize),
     Color(usize),
+    Alpha,
     Other,
 }
 
@@ -263,6 +298,7 @@ impl Role {
             "red" | "r" | "diffuse_red" => Self::Color(0),
             "green" | "g" | "diffuse_green" => Self::Color(1),
             "blue" | "b" | "diffuse_blue" => Self::Color(2),
+            "alpha" | "a" => Self::Alpha,
             _ => Self::Other,
         }
     }
@@ -275,6 +311,7 @@ struct Vertex {
     normal: DVec3,
     uv: [f64; 2],
     color: [f64; 3],
+    alpha: f64,
 }
 
 impl Vertex {
@@ -285,40 +322,44 @@ impl Vertex {
             Role::Normal(axis) => Some(&mut self.normal[axis]),
             Role::Uv(axis) => Some(&mut self.uv[axis]),
             Role::Color(channel) => Some(&mut self.color[channel]),
+            Role::Alpha => Some(&mut self.alpha),
             Role::Other => None,
         }
     }
 }
 
 /// How a file writes the channels of its colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum ColorEncoding {
-    /// From 0 to this, encoded in sRGB.
-    Srgb { most: f64 },
+    /// Whole numbers up to 255, encoded in sRGB; what they decode to.
+    Bytes(Box<[f32; 256]>),
+    /// Whole numbers up to this, encoded in sRGB.
+    Whole { most: f64 },
+    /// Fractions, encoded in sRGB, to be decoded when all are known.
+    Fractions,
     /// Numbers of a mesh, as they are.
     AsStored,
 }
 
 impl ColorEncoding {
-    /// The encoding of channels of these types. Whole numbers are fractions of the largest of their type, as a rule
-    /// 255; others of 1.
-    fn of(mut scalars: impl Iterator<Item = Scalar>, is_as_stored: bool) -> Self {
-        if is_as_stored {
-            return Self::AsStored;
-        }
-        Self::Srgb {
-            most: match scalars.next() {
-                Some(Scalar::F32 | Scalar::F64) | None => 1.0,
-                Some(Scalar::U16) => 65_535.0,
-                Some(_) => 255.0,
-            },
+    /// The encoding of channels of this type. Whole numbers are up to 255 but for the type that must mean more.
+    fn of(scalar: Scalar, is_as_stored: bool) -> Self {
+        match scalar {
+            _ if is_as_stored => Self::AsStored,
+            Scalar::F32 | Scalar::F64 => Self::Fractions,
+            Scalar::U16 => Self::Whole { most: f64::from(u16::MAX) },
+            _ => {
+                Self::Bytes(Box::new(std::array::from_fn(|byte| srgb_to_linear(byte as f64 / 255.0) as f32)))
+            }
         }
     }
 
-    fn decode(self, channel: f64) -> f32 {
+    fn decode(&self, channel: f64) -> f32 {
         match self {
-            Self::Srgb { most } => srgb_to_linear((channel / most).clamp(0.0, 1.0)) as f32,
-            Self::AsStored => channel as f32,
+            // Numbers out of range go to its ends.
+            Self::Bytes(decoded) => decoded[usize::from(channel as u8)],
+            Self::Whole { most } => srgb_to_linear((channel / most).clamp(0.0, 1.0)) as f32,
+            Self::Fractions | Self::AsStored => channel as f32,
         }
     }
 }

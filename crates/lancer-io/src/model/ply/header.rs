@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
-use crate::model::text::{Cursor, Source, Word, decode};
+use crate::model::text::{Cursor, Source, Word, decode, quoted};
 
 /// How the body is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +85,9 @@ impl Element {
     }
 }
 
+/// How many lines that are not understood are told: some programs forget the word `comment`.
+const MOST_WARNINGS: usize = 3;
+
 /// The information by which a file says that its numbers are those of a mesh, to be taken as they are.
 pub(super) const AS_STORED: &str = "lancer: numbers as stored";
 
@@ -97,6 +100,8 @@ pub(super) struct Header {
     pub(super) is_as_stored: bool,
     /// Where the body begins.
     pub(super) body: usize,
+    /// What is odd about it.
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 impl Header {
@@ -135,7 +140,8 @@ impl Header {
         let faces = self.elements.iter().find(|element| element.name == "face").map_or(0, |face| face.count);
         if faces > limits.triangles as u64 {
             let message = format!("has {faces} faces; the most are {}", limits.triangles);
-            return Err(LoadError::new(source.path, message));
+            let hint = "--limit triangles=N allows more";
+            return Err(Diagnostic::new(source.path, message).with_hint(hint).into());
         }
         Ok(())
     }
@@ -151,6 +157,7 @@ impl<'a> Parser<'a> {
         let mut encoding = None;
         let mut elements = Vec::<Element>::new();
         let mut is_as_stored = false;
+        let mut warnings = Vec::new();
         while let Some(keyword) = self.cursor.first_word() {
             match keyword.bytes {
                 b"comment" => {
@@ -172,11 +179,19 @@ impl<'a> Parser<'a> {
                     };
                     let body = keyword.offset + keyword.bytes.len();
                     let body = self.after_newline(first, body);
-                    return Ok(Header { encoding, elements, is_as_stored, body });
+                    return Ok(Header { encoding, elements, is_as_stored, body, warnings });
                 }
                 other => {
-                    let message = format!("`{}` is not known in a PLY header", decode(other));
-                    return Err(self.fault(keyword, message));
+                    let message = format!("`{}` is not known in a PLY header", quoted(other));
+                    // Where the body is described, what is not understood may change it.
+                    if !elements.is_empty() {
+                        return Err(self.fault(keyword, message));
+                    }
+                    if warnings.len() < MOST_WARNINGS {
+                        warnings
+                            .push(self.source.diagnostic(keyword.offset, message + " and is passed over"));
+                    }
+                    self.cursor.rest_of_line();
                 }
             }
             self.cursor.skip_line();
@@ -206,7 +221,7 @@ impl<'a> Parser<'a> {
             b"ascii" => Ok(Encoding::Ascii),
             b"binary_little_endian" => Ok(Encoding::LittleEndian),
             b"binary_big_endian" => Ok(Encoding::BigEndian),
-            other => Err(self.fault(word, format!("`{}` is not an encoding of PLY files", decode(other)))),
+            other => Err(self.fault(word, format!("`{}` is not an encoding of PLY files", quoted(other)))),
         }
     }
 
@@ -215,7 +230,7 @@ impl<'a> Parser<'a> {
         let count = self.argument(keyword, "a number of elements")?;
         let parsed = std::str::from_utf8(count.bytes).ok().and_then(|digits| digits.parse().ok());
         let Some(parsed) = parsed else {
-            let message = format!("`{}` is not a number of elements", decode(count.bytes));
+            let message = format!("`{}` is not a number of elements", quoted(count.bytes));
             return Err(self.fault(count, message));
         };
         Ok(Element { name: decode(name.bytes).into_owned(), count: parsed, properties: Vec::new() })
@@ -240,12 +255,12 @@ impl<'a> Parser<'a> {
 
     fn scalar_of(&self, word: Word) -> Result<Scalar, LoadError> {
         Scalar::named(word.bytes)
-            .ok_or_else(|| self.fault(word, format!("`{}` is not a type of PLY files", decode(word.bytes))))
+            .ok_or_else(|| self.fault(word, format!("`{}` is not a type of PLY files", quoted(word.bytes))))
     }
 
     fn argument(&mut self, keyword: Word<'a>, what: &str) -> Result<Word<'a>, LoadError> {
         let word = self.cursor.word();
-        word.ok_or_else(|| self.fault(keyword, format!("`{}` lacks {what}", decode(keyword.bytes))))
+        word.ok_or_else(|| self.fault(keyword, format!("`{}` lacks {what}", quoted(keyword.bytes))))
     }
 
     fn fault(&self, place: Word, message: impl Into<String>) -> LoadError {

@@ -35,7 +35,7 @@ pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> 
     let header = Header::parse(source)?;
     header.check_counts(source, &resolver.limits)?;
 
-    let mut reader = Reader::new(source, resolver.limits);
+    let mut reader = Reader::new(source, resolver);
     match header.encoding {
         Encoding::Ascii => reader.read(&header, &mut AsciiValues::new(source, header.body)),
         Encoding::LittleEndian => {
@@ -43,8 +43,11 @@ pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> 
         }
         Encoding::BigEndian => reader.read(&header, &mut BinaryValues::<BigEndian>::new(source, header.body)),
     }?;
-    let (mut polygons, warnings) = reader.finish()?;
+    let (mut polygons, told) = reader.finish()?;
+    let warnings = header.warnings.into_iter().chain(told).collect();
 
+    // The file is no longer needed, and what follows needs the memory.
+    drop(bytes);
     // A mesh that was stored without normals is one of facets.
     let crease = options.crease.or(header.is_as_stored.then_some(Crease::FACETS));
     let is_as_stored = !polygons.smooth(crease) && header.is_as_stored;

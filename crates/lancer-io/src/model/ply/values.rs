@@ -4,7 +4,7 @@
 
 use super::header::Scalar;
 use crate::diagnostics::LoadError;
-use crate::model::text::{Cursor, Source, decode};
+use crate::model::text::{Cursor, Source, not_a_number};
 use std::marker::PhantomData;
 
 /// A source of numbers.
@@ -14,6 +14,9 @@ pub(super) trait Values {
 
     /// The next number, which may be NaN or infinite in binary.
     fn next(&mut self, scalar: Scalar) -> Result<f64, LoadError>;
+
+    /// Where in the file it stands.
+    fn offset(&self) -> usize;
 
     /// How many numbers of a type there can still be at most.
     fn most_left(&self, scalar: Scalar) -> usize;
@@ -60,7 +63,11 @@ impl Values for AsciiValues<'_> {
             None => self.too_short(),
         })?;
         self.last = word.offset;
-        word.number().ok_or_else(|| self.fault(format!("`{}` is not a finite number", decode(word.bytes))))
+        word.number().ok_or_else(|| not_a_number(self.source, word).into())
+    }
+
+    fn offset(&self) -> usize {
+        self.cursor.offset()
     }
 
     fn most_left(&self, _: Scalar) -> usize {
@@ -132,6 +139,10 @@ impl<Order: ByteOrder> Values for BinaryValues<'_, Order> {
             Scalar::F32 => f32::from_le_bytes(self.bytes()?).into(),
             Scalar::F64 => f64::from_le_bytes(self.bytes()?),
         })
+    }
+
+    fn offset(&self) -> usize {
+        self.at
     }
 
     fn most_left(&self, scalar: Scalar) -> usize {

@@ -1,14 +1,15 @@
 //! Models of other files, each read once.
 
 use super::{Builder, Warning, problems_of_reference};
-use crate::model::ModelOptions;
+use crate::model::{Crease, ModelOptions};
 use crate::scene_file::deserialize::Spanned;
+use crate::scene_file::model::{MeshFile, MeshReference};
 use lancer_core::scene::{Node, NodeId, Scene};
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// The models that were asked for, by file; `None` for those that cannot be read.
-pub(super) type Models = HashMap<PathBuf, Option<Placed>>;
+/// The models that were asked for, by file and crease angle; `None` for those that cannot be read.
+pub(super) type Models = HashMap<(PathBuf, Option<u64>), Option<Placed>>;
 
 /// A model in the scene.
 #[derive(Clone, Copy)]
@@ -21,13 +22,15 @@ pub(super) struct Placed {
 
 impl Builder<'_> {
     /// The node of a model, with its own materials or without any. `None` where it cannot be read, which is told.
-    pub(super) fn model(&mut self, reference: &Spanned<String>, bare: bool) -> Option<NodeId> {
-        let path = self.source.resolve(reference).map_err(|problem| self.problems.push(problem)).ok()?;
-        if !self.models.contains_key(&path) {
-            let model = self.read_model(reference, &path);
-            self.models.insert(path.clone(), model.map(|own| Placed { own, bare: None }));
+    pub(super) fn model(&mut self, mesh: &Spanned<MeshReference>, bare: bool) -> Option<NodeId> {
+        let (reference, options) = file_and_options(mesh);
+        let path = self.source.resolve(&reference).map_err(|problem| self.problems.push(problem)).ok()?;
+        let key = (path, options.crease.map(|crease| crease.degrees().to_bits()));
+        if !self.models.contains_key(&key) {
+            let model = self.read_model(&reference, &key.0, &options);
+            self.models.insert(key.clone(), model.map(|own| Placed { own, bare: None }));
         }
-        let model = self.models.get_mut(&path)?.as_mut()?;
+        let model = self.models.get_mut(&key)?.as_mut()?;
         if !bare {
             return Some(model.own);
         }
@@ -35,8 +38,13 @@ impl Builder<'_> {
         Some(*model.bare.get_or_insert_with(|| copy_without_materials(scene, model.own)))
     }
 
-    fn read_model(&mut self, reference: &Spanned<String>, path: &std::path::Path) -> Option<NodeId> {
-        match self.source.assets.model(&mut self.scene, path, &ModelOptions::default()) {
+    fn read_model(
+        &mut self,
+        reference: &Spanned<String>,
+        path: &Path,
+        options: &ModelOptions,
+    ) -> Option<NodeId> {
+        match self.source.assets.model(&mut self.scene, path, options) {
             Ok(model) => {
                 self.warnings.extend(model.warnings.into_iter().map(Warning::Elsewhere));
                 Some(model.root)
@@ -45,6 +53,20 @@ impl Builder<'_> {
                 self.problems.extend(problems_of_reference(reference, &error));
                 None
             }
+        }
+    }
+}
+
+/// What a scene file says of a model: its file, and how it is read.
+fn file_and_options(mesh: &Spanned<MeshReference>) -> (Spanned<String>, ModelOptions) {
+    match &mesh.value {
+        MeshReference::Path(path) => {
+            let Spanned { place, is_whole, .. } = *mesh;
+            (Spanned { place, is_whole, value: path.clone() }, ModelOptions::default())
+        }
+        MeshReference::Detailed(MeshFile { file, crease }) => {
+            let crease = crease.as_ref().and_then(|degrees| Crease::from_degrees(degrees.get()));
+            (file.clone(), ModelOptions { crease })
         }
     }
 }

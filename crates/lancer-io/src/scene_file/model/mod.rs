@@ -14,7 +14,9 @@ mod transform;
 pub(crate) use channels::Color;
 pub(crate) use material::{MaterialFile, Pattern, SurfaceColor};
 pub(crate) use named::Named;
-pub(crate) use node::{DetailedShape, MaterialReference, NodeFile, ShapeFile, SimpleShape};
+pub(crate) use node::{
+    DetailedShape, MaterialReference, MeshFile, MeshReference, NodeFile, ShapeFile, SimpleShape,
+};
 pub(crate) use settings::{CameraFile, LightFile, RenderFile};
 pub(crate) use transform::{Step, transform_of};
 

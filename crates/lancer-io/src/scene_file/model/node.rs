@@ -1,6 +1,7 @@
 //! Objects: nodes of the tree, the shapes they draw and the materials they name.
 
 use super::material::MaterialFile;
+use super::number::{CreaseAngle, Number};
 use super::transform::Step;
 use crate::scene_file::deserialize::{Forms, OneOf, Spanned};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -78,10 +79,40 @@ pub(crate) enum SimpleShape {
 #[derive(Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum DetailedShape {
-    /// The path of a model.
-    Mesh(Spanned<String>),
+    /// A model of a file.
+    Mesh(Spanned<MeshReference>),
     /// x^2 + z^2 = 1 for -1 <= y <= 1.
     Cylinder(Cylinder),
+}
+
+/// A model by its path, or with how it is to be read.
+pub(crate) enum MeshReference {
+    Path(String),
+    Detailed(MeshFile),
+}
+
+/// A model with how it is to be read.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Mesh")]
+pub(crate) struct MeshFile {
+    /// The path of the model.
+    pub(crate) file: Spanned<String>,
+    /// Faces without normals are smooth across edges of up to this angle in degrees; 0 is for facets.
+    #[serde(default)]
+    pub(crate) crease: Option<Number<CreaseAngle>>,
+}
+
+impl Forms for MeshReference {
+    const FORMS: &'static str = "text that names a model's file, or {file: PATH, crease: DEGREES}";
+
+    fn from_text<E: Error>(text: &str) -> Result<Self, E> {
+        Ok(Self::Path(text.into()))
+    }
+
+    fn from_mapping<'de, D: Deserializer<'de>>(mapping: D) -> Result<Self, D::Error> {
+        MeshFile::deserialize(mapping).map(Self::Detailed)
+    }
 }
 
 /// A cylinder's own choices.
@@ -122,6 +153,12 @@ impl<'de> Deserialize<'de> for ShapeFile {
     }
 }
 
+impl<'de> Deserialize<'de> for MeshReference {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        OneOf::deserialize(deserializer)
+    }
+}
+
 impl JsonSchema for MaterialReference {
     fn inline_schema() -> bool {
         true
@@ -133,6 +170,20 @@ impl JsonSchema for MaterialReference {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({ "anyOf": [{ "type": "string" }, generator.subschema_for::<MaterialFile>()] })
+    }
+}
+
+impl JsonSchema for MeshReference {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "MeshReference".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "string" }, generator.subschema_for::<MeshFile>()] })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Numbers that are checked as they are read, so that nothing later has to.
 
+use crate::model::Crease;
 use lancer_core::film::Tone;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
@@ -33,6 +34,9 @@ pub(crate) struct Fraction;
 
 /// Between 0 and 180, both excluded.
 pub(crate) struct FieldOfView;
+
+/// From 0 to 180, both included.
+pub(crate) struct CreaseAngle;
 
 /// From -100 to 100 stops, both included: [`Tone::MAX_EXPOSURE`].
 pub(crate) struct Exposure;
@@ -94,6 +98,18 @@ impl Range for FieldOfView {
 
     fn schema() -> Schema {
         json_schema!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180 })
+    }
+}
+
+impl Range for CreaseAngle {
+    const WORDS: &'static str = "a number from 0 to 180";
+
+    fn holds(number: f64) -> bool {
+        Crease::from_degrees(number).is_some()
+    }
+
+    fn schema() -> Schema {
+        json_schema!({ "type": "number", "minimum": 0, "maximum": 180 })
     }
 }
 
