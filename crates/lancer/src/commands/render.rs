@@ -62,12 +62,16 @@ pub(super) fn trace(
     cancel: &CancelToken,
     progress: &Progress,
 ) -> Result<Render, Error> {
-    let _handled = interrupt::cancels(cancel);
+    let handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
     let control =
         Control { cancel: cancel.clone(), on_tile: &|tile, rays| bar.advance(tile, rays), tile_size };
-    Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
+    let picture = render(world, &shot.camera, &shot.settings, shot.region, &control)?;
+    // From here on, a request to stop ends the program. One that came after the last tile has looked must not be
+    // lost: what follows may wait for a reader for ever.
+    drop(handled);
+    if cancel.is_cancelled() { Err(Error::Interrupted) } else { Ok(picture) }
 }
 
 fn write(
