@@ -7,6 +7,7 @@ use lancer_core::mesh::{Mesh, MeshData};
 use lancer_core::sampling::Key;
 use lancer_core::scene::{Scene, Shape};
 use lancer_io::limits::Limits;
+use lancer_io::model::{Crease, ModelOptions};
 use lancer_io::resolver::Resolver;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -19,10 +20,13 @@ pub(crate) struct Subject {
     pub(crate) mesh: Arc<Mesh>,
 }
 
+/// Files without normals are measured as facets, whatever would look best.
+const FACETS: ModelOptions = ModelOptions { crease: Some(Crease::FACETS) };
+
 /// The largest mesh of a model file.
 pub(crate) fn from_file(path: &Path) -> Result<Subject, Failure> {
     let resolver = Resolver::for_file(path, true, Limits::default());
-    let model = lancer_io::model::load(path, &resolver)?;
+    let model = lancer_io::model::load(path, &resolver, &FACETS)?;
     let mut scene = Scene::new("model");
     let node = model.insert_into(&mut scene);
     scene.add(node);
@@ -38,7 +42,7 @@ pub(crate) fn from_file(path: &Path) -> Result<Subject, Failure> {
 /// All meshes of a model file as one, of flat facets.
 pub(crate) fn whole_file(path: &Path) -> Result<Mesh, Failure> {
     let resolver = Resolver::for_file(path, true, Limits::default());
-    let model = lancer_io::model::load(path, &resolver)?;
+    let model = lancer_io::model::load(path, &resolver, &FACETS)?;
     let mut scene = Scene::new("model");
     let _node = model.insert_into(&mut scene);
     let mut all = MeshData::default();

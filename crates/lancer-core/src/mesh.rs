@@ -3,12 +3,13 @@
 //! In: arrays as a loader or a program makes them. Out: a mesh whose every index and number can be trusted.
 //! It knows no accelerator, material or light.
 
+use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3};
 
 /// The arrays of a triangle mesh, not yet validated.
 ///
 /// Shape: `positions: [vertices][3]`, `normals: [vertices][3]` or empty, `uvs: [vertices][2]` or empty,
-/// `indices: [triangles][3]`. A triangle is seen from outside where its vertices run counter-clockwise.
+/// `colors: [vertices][3]` or empty, `indices: [triangles][3]`. A triangle is seen from outside where its vertices run counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
     /// Vertex positions in the mesh's canonical space.
@@ -17,6 +18,8 @@ pub struct MeshData {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates, (0, 0) at the lower left of the image; empty where there are none.
     pub uvs: Vec<[f32; 2]>,
+    /// Colours, linear RGB in [0, 1], which multiply the material's S; empty where there are none.
+    pub colors: Vec<[f32; 3]>,
     /// Three vertices a triangle.
     pub indices: Vec<[u32; 3]>,
 }
@@ -40,15 +43,21 @@ pub enum MeshError {
     /// A number is NaN or infinite.
     #[error("the {attribute} of vertex {vertex} is not finite")]
     NotFinite {
-        /// `position`, `normal` or `texture coordinate`.
+        /// `position`, `normal`, `texture coordinate` or `color`.
         attribute: &'static str,
+        /// The vertex, counted from 0.
+        vertex: usize,
+    },
+    /// A colour would take light away or give more than there is.
+    #[error("the color of vertex {vertex} is not within [0, 1]")]
+    ColorOutOfRange {
         /// The vertex, counted from 0.
         vertex: usize,
     },
     /// An attribute array is neither empty nor of one entry a vertex.
     #[error("there are {found} {attribute}s for {vertices} vertices")]
     LengthMismatch {
-        /// `normal` or `texture coordinate`.
+        /// `normal`, `texture coordinate` or `color`.
         attribute: &'static str,
         /// Entries found.
         found: usize,
@@ -86,7 +95,12 @@ impl Mesh {
         if data.indices.len() > Self::MAX_TRIANGLES {
             return Err(MeshError::TooLarge { triangles: data.indices.len() });
         }
-        for (attribute, found) in [("normal", data.normals.len()), ("texture coordinate", data.uvs.len())] {
+        let lengths = [
+            ("normal", data.normals.len()),
+            ("texture coordinate", data.uvs.len()),
+            ("color", data.colors.len()),
+        ];
+        for (attribute, found) in lengths {
             if found != 0 && found != vertices {
                 return Err(MeshError::LengthMismatch { attribute, found, vertices });
             }
@@ -94,6 +108,11 @@ impl Mesh {
         all_finite("position", &data.positions)?;
         all_finite("normal", &data.normals)?;
         all_finite("texture coordinate", &data.uvs)?;
+        all_finite("color", &data.colors)?;
+        let is_color = |color: &[f32; 3]| color.iter().all(|x| (0.0..=1.0).contains(x));
+        if let Some(vertex) = data.colors.iter().position(|color| !is_color(color)) {
+            return Err(MeshError::ColorOutOfRange { vertex });
+        }
         for (triangle, corners) in data.indices.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&index| index as usize >= vertices) {
                 return Err(MeshError::IndexOutOfRange { triangle, index, vertices });
@@ -156,11 +175,23 @@ impl Mesh {
         })
     }
 
+    /// The colours of a triangle's corners, if the mesh has them.
+    pub fn corner_colors(&self, triangle: u32) -> Option<[Rgb; 3]> {
+        let corners = self.data.indices[triangle as usize];
+        (!self.data.colors.is_empty()).then(|| {
+            corners.map(|index| {
+                let [r, g, b] = self.data.colors[index as usize].map(f64::from);
+                Rgb::new(r, g, b)
+            })
+        })
+    }
+
     /// Bytes held by the arrays.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.data.positions[..])
             + size_of_val(&self.data.normals[..])
             + size_of_val(&self.data.uvs[..])
+            + size_of_val(&self.data.colors[..])
             + size_of_val(&self.data.indices[..])
     }
 }
@@ -210,5 +241,16 @@ mod tests {
         let data = MeshData { normals: vec![[0.0, 0.0, 1.0]], ..triangle() };
         let fault = MeshError::LengthMismatch { attribute: "normal", found: 1, vertices: 3 };
         assert_eq!(Mesh::new(data), Err(fault));
+
+        let data = MeshData { colors: vec![[1.0; 3]; 2], ..triangle() };
+        let fault = MeshError::LengthMismatch { attribute: "color", found: 2, vertices: 3 };
+        assert_eq!(Mesh::new(data), Err(fault));
+
+        let colored = |color| MeshData { colors: vec![[0.0; 3], color, [1.0; 3]], ..triangle() };
+        let not_finite = Err(MeshError::NotFinite { attribute: "color", vertex: 1 });
+        assert_eq!(Mesh::new(colored([f32::NAN, 0.0, 0.0])), not_finite);
+        for color in [[1.0, 1.5, 0.0], [-0.1, 0.0, 0.0]] {
+            assert_eq!(Mesh::new(colored(color)), Err(MeshError::ColorOutOfRange { vertex: 1 }));
+        }
     }
 }

@@ -55,6 +55,7 @@ pub mod limits;
 mod load;
 pub mod model;
 pub mod output;
+mod package;
 pub mod provenance;
 pub mod resolver;
 pub mod scene_file;

@@ -3,7 +3,7 @@
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::image::load_texture;
 use crate::limits::Limits;
-use crate::model::{self, ModelFormat};
+use crate::model::{self, ModelOptions};
 use crate::resolver::Resolver;
 use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
@@ -18,6 +18,8 @@ pub struct LoadOptions {
     pub limits: Limits,
     /// Whether it may refer to files outside of its own directory.
     pub allow_outside: bool,
+    /// How its models are read, where a scene file does not say it of one.
+    pub model: ModelOptions,
     /// What is to be read in place of what it says.
     pub overrides: Vec<Override>,
 }
@@ -51,15 +53,20 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     let resolver = Resolver::for_file(path, options.allow_outside, options.limits);
     if is_scene_file(path) {
         let bytes = resolver.read(path)?;
-        let mut assets = Files { resolver };
+        let mut assets = Files { resolver, options: options.model };
         return scene_file::read(path, &bytes, &options.overrides, &mut assets, &options.limits);
     }
-    if ModelFormat::of_path(path).is_none() {
+    if !model::is_model_file(path) {
         return Err(unknown_kind(path));
     }
-    let mut model = model::load(path, &resolver)?;
-    let warnings = std::mem::take(&mut model.warnings);
+    let mut model = model::load(path, &resolver, &options.model)?;
+    let mut warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
+    if scene.tone.exposure != 0.0 {
+        let stops = scene.tone.exposure;
+        let message = format!("its own lights are far from 1, so the picture is exposed by {stops:+} stops");
+        warnings.push(Diagnostic::new(path, message).with_hint("--exposure chooses otherwise"));
+    }
     scene_file::apply_overrides(&mut scene, &options.overrides)?;
     Ok(Loaded { warnings, ..Loaded::from(scene) })
 }
@@ -71,9 +78,8 @@ pub fn is_scene_file(path: &Path) -> bool {
 }
 
 fn unknown_kind(path: &Path) -> LoadError {
-    let models = ModelFormat::ALL.iter().map(|format| format.extension());
-    let known =
-        SCENE_EXTENSIONS.into_iter().chain(models).map(|known| format!(".{known}")).collect::<Vec<_>>();
+    let known = SCENE_EXTENSIONS.into_iter().chain(model::model_extensions());
+    let known = known.map(|known| format!(".{known}")).collect::<Vec<_>>();
     let hint = format!("the kind of a file is told by its name: {}", known.join(", "));
     Diagnostic::new(path, "is neither a scene file nor a model of a known format").with_hint(hint).into()
 }
@@ -81,6 +87,7 @@ fn unknown_kind(path: &Path) -> LoadError {
 /// The models and images of a scene file, from disk.
 struct Files {
     resolver: Resolver,
+    options: ModelOptions,
 }
 
 impl Assets for Files {
@@ -88,8 +95,14 @@ impl Assets for Files {
         self.resolver.resolve(from, reference)
     }
 
-    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<scene_file::Model, LoadError> {
-        let mut model = model::load(path, &self.resolver)?;
+    fn model(
+        &mut self,
+        scene: &mut Scene,
+        path: &Path,
+        options: &ModelOptions,
+    ) -> Result<scene_file::Model, LoadError> {
+        let options = ModelOptions { crease: options.crease.or(self.options.crease) };
+        let mut model = model::load(path, &self.resolver, &options)?;
         let warnings = std::mem::take(&mut model.warnings);
         let node = model.insert_into(scene);
         Ok(scene_file::Model { root: scene.insert(node), warnings })

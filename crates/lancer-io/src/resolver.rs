@@ -2,9 +2,11 @@
 
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
+use crate::package::Packed;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Turns references written in files into files that may be opened.
 #[derive(Clone, Debug)]
@@ -13,13 +15,20 @@ pub struct Resolver {
     allow_outside: bool,
     /// How much a file may ask for.
     pub limits: Limits,
+    /// The packed file that is being read.
+    packed: Option<Arc<Packed>>,
 }
 
 impl Resolver {
     /// A resolver for the file at `path`, which the user named and which may lie anywhere. What it refers to
     /// must lie in its directory or below, symbolic links followed, unless `allow_outside`.
     pub fn for_file(path: &Path, allow_outside: bool, limits: Limits) -> Self {
-        Self { root: directory_of(path), allow_outside, limits }
+        Self { root: directory_of(path), allow_outside, limits, packed: None }
+    }
+
+    /// The resolver for what is in a packed file.
+    pub(crate) fn within(&self, packed: Packed) -> Self {
+        Self { packed: Some(Arc::new(packed)), ..self.clone() }
     }
 
     /// The file that `reference`, written in the file `from`, names: relative to the directory of `from`.
@@ -29,6 +38,9 @@ impl Resolver {
     pub fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String> {
         if reference.trim().is_empty() {
             return Err("the path is empty".into());
+        }
+        if let Some(resolved) = self.packed.as_ref().and_then(|packed| packed.resolve(from, reference)) {
+            return resolved;
         }
         let portable = reference.replace('\\', "/");
         let path = directory_of(from).join(&portable);
@@ -51,6 +63,9 @@ impl Resolver {
     /// # Errors
     /// It cannot be read, or is too long.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, LoadError> {
+        if let Some(read) = self.packed.as_ref().and_then(|packed| packed.read(path, &self.limits)) {
+            return read.map_err(|message| LoadError::new(path, message));
+        }
         let failed =
             |error: std::io::Error| LoadError::new(path, format!("cannot be read: {}", reason(&error)));
         // Asked before it is opened: to open a pipe would wait for whoever writes to it.

@@ -1,11 +1,16 @@
 //! A bare model made into a scene that shows it well.
 //!
 //! In: a model of any size, anywhere. Out: a scene with a camera that frames it, three lights, a ground and
-//! ambient occlusion, all in proportion to the model. The model is taken to stand on -Y and to face +Z.
+//! ambient occlusion, all in proportion to the model. The model is taken to stand on -Y and to face +Z, or where
+//! its format has +Z pointing up, on -Z and to face -Y; then it is turned.
+//!
+//! A file that has cameras or lights is a scene already: it is seen by its first camera, lit by its own lights, and
+//! gets no ground. What it lacks of the two is added.
 
-use crate::model::Model;
+use crate::model::{Model, ModelCamera, UpAxis};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
+use lancer_core::film::Tone;
 use lancer_core::geometry::{Bounds, DVec3, Transform, portable};
 use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, Scene, Settings, Shape};
 use std::f64::consts::PI;
@@ -54,26 +59,91 @@ const OCCLUSION_SAMPLES: u32 = 16;
 /// the ground are not one surface.
 const GROUND_GAP: f64 = 1e-4;
 
+/// What a file's own lights may give a white surface amid the model before the picture is exposed for them:
+/// outside of this nearly all of it would be white, or black.
+const WELL_LIT: std::ops::RangeInclusive<f64> = 0.1..=2.5;
+
+/// The most that the lights give such a surface in a picture exposed for them; by whole stops, the least is half.
+const EXPOSED_FOR: f64 = 1.0;
+
+/// The least and the most pixels in a row of a picture with a file's own aspect.
+const WIDTHS: std::ops::RangeInclusive<f64> = 100.0..=2400.0;
+
 /// The scene that shows a model.
-pub fn scene_of_model(model: Model) -> Scene {
-    let bounds = model.bounds();
+///
+/// Where the model's own lights are far from giving 1 (they are in candela, and a lamp gives hundreds), the scene's
+/// exposure makes up for it, and ambient light and background are such that they look as ever.
+pub fn scene_of_model(mut model: Model) -> Scene {
+    let upright = match model.up {
+        UpAxis::Y => Transform::IDENTITY,
+        UpAxis::Z => Transform::rotate(DVec3::X, -90.0),
+    };
+    let bounds = model.bounds_under(upright);
     let diagonal = if bounds.diagonal() > 0.0 { bounds.diagonal() } else { 1.0 };
+    let is_scene = !model.cameras.is_empty() || !model.lights.is_empty();
     let mut scene = Scene::new(model.name.clone());
     scene.settings = settings(diagonal);
-    scene.camera = framing_camera(bounds, diagonal, scene.settings);
-    scene.ambient = AMBIENT;
-    scene.background = Rgb::from_srgb_hex(0xc3_cdd9);
-    scene.lights = lights(bounds.center(), diagonal, &scene.camera);
+    let cameras = std::mem::take(&mut model.cameras);
+    match cameras.first() {
+        Some(first) => {
+            scene.camera = first.camera;
+            scene.settings.width = width_of(first, scene.settings);
+        }
+        None => scene.camera = framing_camera(bounds, diagonal, scene.settings),
+    }
+    scene.cameras = cameras.into_iter().map(|camera| (camera.name, camera.camera)).collect();
+    scene.lights = std::mem::take(&mut model.lights);
+    if scene.lights.is_empty() {
+        scene.lights = lights(bounds.center(), diagonal, &scene.camera);
+    } else {
+        scene.tone.exposure = exposure_for(&scene.lights, bounds);
+    }
+    let shown_as_is = 1.0 / f64::from(scene.tone.factor());
+    scene.ambient = AMBIENT * shown_as_is;
+    scene.background = Rgb::from_srgb_hex(0xc3_cdd9) * shown_as_is;
 
     let plaster = scene.add_material(plaster());
-    let ground = scene.add_material(ground_material());
-    let height = bounds.min.y - GROUND_GAP * diagonal;
-    let at = DVec3::new(bounds.center().x, height, bounds.center().z);
-    let ground = Node::shape("ground", Shape::Plane).with_material(ground);
-    scene.add(ground.with_transform(Transform::translate(at)));
+    if !is_scene {
+        let ground = scene.add_material(ground_material());
+        let height = bounds.min.y - GROUND_GAP * diagonal;
+        let at = DVec3::new(bounds.center().x, height, bounds.center().z);
+        let ground = Node::shape("ground", Shape::Plane).with_material(ground);
+        scene.add(ground.with_transform(Transform::translate(at)));
+    }
+    paint(&mut model);
     let model = model.insert_into(&mut scene).with_material(plaster);
-    scene.add(model);
+    let place = model.transform.then(upright);
+    scene.add(model.with_transform(place));
     scene
+}
+
+/// Pixels in a row for a camera's own aspect.
+fn width_of(camera: &ModelCamera, settings: Settings) -> u32 {
+    let width = |aspect: f64| (aspect * f64::from(settings.height)).round();
+    camera.aspect.map_or(settings.width, |aspect| width(aspect).clamp(*WIDTHS.start(), *WIDTHS.end()) as u32)
+}
+
+/// The stops by which a picture under a file's own lights is to be made brighter, a whole number.
+///
+/// Judged by the median over points amid the model, since one of them may lie near a light.
+fn exposure_for(lights: &[Light], bounds: Bounds) -> f64 {
+    let center = bounds.center();
+    let points = bounds.corners().map(|corner| center.lerp(corner, 0.5)).into_iter().chain([center]);
+    let given = |point: DVec3| {
+        let one =
+            |light: &Light| light.intensity.max_channel() / (PI * light.position.distance_squared(point));
+        lights.iter().map(one).sum::<f64>()
+    };
+    let mut given = points.map(given).collect::<Vec<_>>();
+    given.sort_by(f64::total_cmp);
+    let median = given[given.len() / 2];
+    if WELL_LIT.contains(&median) || !median.is_normal() {
+        return 0.0;
+    }
+    let brighter = (0..).take_while(|&stops| median * portable::exp2(f64::from(stops + 1)) <= EXPOSED_FOR);
+    let darker = (0..).take_while(|&stops| median * portable::exp2(f64::from(-stops)) > EXPOSED_FOR);
+    let stops = brighter.count() as f64 - darker.count() as f64;
+    stops.clamp(-Tone::MAX_EXPOSURE, Tone::MAX_EXPOSURE)
 }
 
 fn settings(diagonal: f64) -> Settings {
@@ -88,6 +158,17 @@ fn plaster() -> Material {
         specular: Rgb::grey(0.006),
         shininess: 40.0,
         ..Material::named("plaster")
+    }
+}
+
+/// Gives parts that have colours of their own and no material a white plaster: the warm one would tint them.
+fn paint(model: &mut Model) {
+    let white = model.materials.len();
+    let parts = model.parts.iter_mut().filter(|part| part.material.is_none());
+    let painted = parts.filter(|part| !part.mesh.data().colors.is_empty());
+    if painted.map(|part| part.material = Some(white)).count() > 0 {
+        let name = "painted plaster".to_owned();
+        model.materials.push(Material { name, color: Rgb::WHITE.into(), ..plaster() });
     }
 }
 

@@ -5,7 +5,7 @@ use lancer_core::geometry::DVec3;
 use lancer_core::scene::{Scene, Shape, Texture};
 use lancer_io::diagnostics::LoadError;
 use lancer_io::limits::Limits;
-use lancer_io::model::{self, Model, ModelPart};
+use lancer_io::model::{self, Model, ModelOptions, ModelPart};
 use lancer_io::resolver::Resolver;
 use proptest::prelude::*;
 use std::fmt::Display;
@@ -39,7 +39,7 @@ impl Files {
 
     fn load_within(&self, name: &str, limits: Limits) -> Result<Model, LoadError> {
         let path = self.path(name);
-        model::load(&path, &Resolver::for_file(&path, false, limits))
+        model::load(&path, &Resolver::for_file(&path, false, limits), &ModelOptions::default())
     }
 }
 
@@ -80,7 +80,7 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn an_unknown_extension_is_an_error_that_lists_what_is_read() {
-    let error = Files::new().with("a.stl", "solid").load("a.stl").unwrap_err().to_string();
+    let error = Files::new().with("a.3ds", "solid").load("a.3ds").unwrap_err().to_string();
     assert!(error.contains(".obj, .ply"), "{error}");
 }
 

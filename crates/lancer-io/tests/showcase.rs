@@ -3,7 +3,7 @@
 use lancer_core::geometry::DVec3;
 use lancer_core::scene::Scene;
 use lancer_io::limits::Limits;
-use lancer_io::model::{self, Model};
+use lancer_io::model::{self, Model, ModelOptions};
 use lancer_io::resolver::Resolver;
 use lancer_io::showcase::scene_of_model;
 
@@ -11,7 +11,8 @@ fn obj(text: &str) -> Model {
     let directory = tempfile::TempDir::new().unwrap();
     let path = directory.path().join("model.obj");
     std::fs::write(&path, text).unwrap();
-    model::load(&path, &Resolver::for_file(&path, false, Limits::default())).unwrap()
+    model::load(&path, &Resolver::for_file(&path, false, Limits::default()), &ModelOptions::default())
+        .unwrap()
 }
 
 #[test]

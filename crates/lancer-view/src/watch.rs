@@ -244,7 +244,7 @@ fn is_temporary(path: &Path) -> bool {
 
 fn may_refer_to_others(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default();
-    SCENE_EXTENSIONS.iter().chain(&["obj", "mtl"]).any(|known| ending.eq_ignore_ascii_case(known))
+    SCENE_EXTENSIONS.iter().chain(&["obj", "mtl", "gltf"]).any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 fn start_of_text(path: &Path) -> Option<Vec<u8>> {

@@ -65,7 +65,8 @@ pub(crate) enum Command {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct RenderArgs {
-    /// A built-in scene, a scene file (.yaml, .yml, .json) or a model
+    /// A built-in scene, a scene file (.yaml, .yml, .json) or a model (.obj, .ply, .stl, .off, .gltf, .glb, .3mf; packed
+    /// as .gz or .zip)
     ///
     /// Without it, the default built-in scene. `lancer scenes` lists the built-in ones. A model is framed, lit and
     /// given a default material.

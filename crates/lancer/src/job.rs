@@ -191,6 +191,7 @@ pub(crate) fn load_options(reading: ReadingArgs) -> LoadOptions {
         limits: Limits::default(),
         allow_outside: reading.access.allow_outside,
         overrides: reading.overrides,
+        ..LoadOptions::default()
     }
 }
 

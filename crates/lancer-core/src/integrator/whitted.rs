@@ -175,7 +175,7 @@ impl<L: Listener> Walk<'_, '_, L> {
             position: at.point,
             normal: at.facing_normal(),
             to_eye: -pending.ray.direction,
-            color: material.color.color_at(at.uv),
+            color: material.color.color_at(at.uv) * at.vertex_color,
             material,
         };
         self.listener.surface(&at, point.color);

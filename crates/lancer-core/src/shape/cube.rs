@@ -1,6 +1,7 @@
 //! The surface of [-1, 1]^3.
 
 use super::{Chord, Hit, SurfacePoint};
+use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
 /// The box around it, in its own space.
@@ -43,5 +44,6 @@ pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
         geometric_normal: normal,
         shading_normal: normal,
         uv: (across + DVec2::ONE) * 0.5,
+        vertex_color: Rgb::WHITE,
     }
 }

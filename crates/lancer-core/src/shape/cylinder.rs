@@ -1,6 +1,7 @@
 //! x^2 + z^2 = 1 for -1 <= y <= 1, closed by two discs or open.
 
 use super::{Chord, Hit, ON_UNIT_BALL, SurfacePoint, turn_about_y, unit_ball_chord};
+use crate::color::Rgb;
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
@@ -63,5 +64,12 @@ pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
         let uv = 0.5 * (DVec2::new(on_ray.x, -y * on_ray.z) + DVec2::ONE);
         (DVec3::new(on_ray.x, y, on_ray.z), DVec3::ZERO, DVec3::new(0.0, y, 0.0), uv)
     };
-    SurfacePoint { point, point_error: error, geometric_normal: normal, shading_normal: normal, uv }
+    SurfacePoint {
+        point,
+        point_error: error,
+        geometric_normal: normal,
+        shading_normal: normal,
+        uv,
+        vertex_color: Rgb::WHITE,
+    }
 }

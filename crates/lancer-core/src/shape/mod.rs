@@ -17,6 +17,7 @@ pub mod triangle;
 #[cfg(test)]
 mod tests;
 
+use crate::color::Rgb;
 use crate::geometry::{DVec2, DVec3};
 
 /// Where a ray meets a shape.
@@ -41,6 +42,8 @@ pub struct SurfacePoint {
     pub shading_normal: DVec3,
     /// Texture coordinates.
     pub uv: DVec2,
+    /// The colour that the shape itself has here; white but for meshes with vertex colours.
+    pub vertex_color: Rgb,
 }
 
 /// The stretch of a line inside of a convex shape, with the faces at its ends.

@@ -1,6 +1,7 @@
 //! y = 0, unbounded, with the normal +Y.
 
 use super::{Hit, SurfacePoint};
+use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
 /// All of space: it has no finite box.
@@ -30,5 +31,6 @@ pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
         geometric_normal: DVec3::Y,
         shading_normal: DVec3::Y,
         uv: DVec2::new(on_ray.x, -on_ray.z),
+        vertex_color: Rgb::WHITE,
     }
 }

@@ -1,6 +1,7 @@
 //! x^2 + y^2 + z^2 = 1.
 
 use super::{Chord, Hit, ON_UNIT_BALL, SurfacePoint, turn_about_y, unit_ball_chord};
+use crate::color::Rgb;
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray, portable};
 use std::f64::consts::PI;
@@ -40,5 +41,6 @@ pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
         geometric_normal: point,
         shading_normal: point,
         uv: DVec2::new(turn_about_y(point.x, point.z), v),
+        vertex_color: Rgb::WHITE,
     }
 }

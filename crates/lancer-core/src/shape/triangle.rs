@@ -10,6 +10,7 @@
 //! only become zero, which counts as inside.
 
 use super::{Hit, SurfacePoint};
+use crate::color::Rgb;
 use crate::geometry::error::gamma;
 use crate::geometry::{DVec2, DVec3, Ray};
 use crate::mesh::Mesh;
@@ -139,7 +140,8 @@ impl<'a> Canonical<'a> {
 /// The surface at a hit with triangle `primitive` of `mesh`.
 ///
 /// The shading normal is the interpolated vertex normal, turned to the geometric one's side; the texture
-/// coordinates are interpolated, or are the barycentric ones of the last two corners where the mesh has none.
+/// coordinates are interpolated, or are the barycentric ones of the last two corners where the mesh has none;
+/// vertex colours are interpolated.
 pub fn surface(ray: &Ray, mesh: &Mesh, primitive: u32) -> SurfacePoint {
     let hit = ShearedRay::new(ray).intersect(&mesh.vertices(primitive));
     let [u, v, w] = hit.map_or([1.0, 0.0, 0.0], |hit| hit.barycentric);
@@ -155,6 +157,7 @@ pub fn surface(ray: &Ray, mesh: &Mesh, primitive: u32) -> SurfacePoint {
             .and_then(|[a, b, c]| shading_normal(a * u + b * v + c * w, geometric_normal))
             .unwrap_or(geometric_normal),
         uv: mesh.corner_uvs(primitive).map_or(DVec2::new(v, w), |[a, b, c]| a * u + b * v + c * w),
+        vertex_color: mesh.corner_colors(primitive).map_or(Rgb::WHITE, |[a, b, c]| a * u + b * v + c * w),
     }
 }
 

@@ -1,6 +1,7 @@
 //! A hit with everything that shading wants to know of it.
 
 use super::{Hit, ObjectId, World};
+use crate::color::Rgb;
 use crate::geometry::{DVec2, DVec3, Ray};
 use crate::scene::MaterialId;
 use crate::shape;
@@ -20,6 +21,8 @@ pub struct Intersection {
     pub shading_normal: DVec3,
     /// Texture coordinates.
     pub uv: DVec2,
+    /// The interpolated vertex colour of a mesh that has them, else white: S is the material's colour times this.
+    pub vertex_color: Rgb,
     /// What was hit.
     pub object: ObjectId,
     /// Which face or triangle of it.
@@ -44,6 +47,7 @@ impl Intersection {
             geometric_normal: placement.normal_to_world(surface.geometric_normal),
             shading_normal: placement.normal_to_world(surface.shading_normal),
             uv: surface.uv,
+            vertex_color: surface.vertex_color,
             object: hit.object,
             primitive: hit.primitive,
             material: object.material,

@@ -5,6 +5,7 @@
 //! before any is decoded.
 
 use crate::diagnostics::{Diagnostic, LoadError};
+use crate::limits::Limits;
 use crate::resolver::Resolver;
 use ::image::{
     ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits as DecoderLimits,
@@ -29,8 +30,16 @@ const DECODER_OVERHEAD: u64 = 16 << 20;
 /// The file cannot be read, is of another format, is broken, or has more pixels than
 /// [`Limits::texture_pixels`](crate::limits::Limits::texture_pixels).
 pub fn load_texture(path: &Path, resolver: &Resolver) -> Result<Arc<ImageTexture>, LoadError> {
-    let bytes = resolver.read(path)?;
-    let image = decode(path, &bytes, resolver.limits.texture_pixels)?;
+    texture_of_bytes(path, &resolver.read(path)?, &resolver.limits)
+}
+
+/// As [`load_texture`], from bytes that are part of another file; `path` is what messages call them.
+pub(crate) fn texture_of_bytes(
+    path: &Path,
+    bytes: &[u8],
+    limits: &Limits,
+) -> Result<Arc<ImageTexture>, LoadError> {
+    let image = decode(path, bytes, limits.texture_pixels)?;
     let rgb = image.into_rgb8();
     let (width, height) = rgb.dimensions();
     let texels = rgb.pixels().map(|pixel| pixel.0).collect();

@@ -10,6 +10,7 @@ mod metadata;
 mod read;
 
 pub use decode::load_texture;
+pub(crate) use decode::texture_of_bytes;
 pub use format::{Compression, Encoding, EncodingChoice, EncodingError, ImageFormat, UnknownImageFormat};
 pub use metadata::Metadata;
 pub use read::{Picture, decode_picture, provenance_of, read_picture};

@@ -15,7 +15,7 @@ use super::mtl::MaterialLibrary;
 use super::polygons::{Corner, NONE, Polygons};
 use super::report::{PassedOver, Report};
 use super::text::{Cursor, Reference, Source, Word, decode};
-use super::{Model, ModelPart, name_of};
+use super::{Model, ModelOptions, ModelPart, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Reads the OBJ file at `path` and the material libraries that it names.
-pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError> {
+pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> Result<Model, LoadError> {
     let bytes = resolver.read(path)?;
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         let error = Diagnostic::new(path, "is written in UTF-16, which OBJ files are not");
@@ -34,10 +34,11 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
     let source = Source { path, bytes: &bytes };
     let mut parser = Parser::new(source, resolver.limits);
     parser.parse();
-    let Obj { polygons, groups, libraries, object, mut warnings } = parser.finish()?;
+    let Obj { mut polygons, groups, libraries, object, mut warnings } = parser.finish()?;
 
     let names = groups.iter().map(|group| group.as_deref());
     let library = MaterialLibrary::load(&libraries, source, names, resolver, &mut warnings);
+    polygons.smooth(options.crease);
     let meshes = polygons.into_meshes().map_err(|error| LoadError::new(path, error.to_string()))?;
     let fallback = object.unwrap_or_else(|| name_of(path));
     let part = |(group, mesh): (u32, _)| {
@@ -51,6 +52,7 @@ pub(super) fn load(path: &Path, resolver: &Resolver) -> Result<Model, LoadError>
         materials: library.materials,
         origin: meshes.origin,
         warnings,
+        ..Model::default()
     })
 }
 

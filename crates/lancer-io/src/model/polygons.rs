@@ -1,13 +1,16 @@
 //! Polygons as files hold them, made into meshes.
 //!
-//! In: positions, normals and texture coordinates, each with indices of its own, and polygons of them in
-//! groups. Out: validated triangle meshes in single precision, relative to one origin. It knows no file
+//! In: positions with their colours, normals and texture coordinates, each with indices of its own, and polygons
+//! of them in groups. Out: validated triangle meshes in single precision, relative to one origin. It knows no file
 //! format; the loaders have checked every index and number.
 
+use super::normals::{CornerNormals, Faces, JoinedUpTo, NO_NORMAL, corner_normals, places_of};
+use super::options::Crease;
 use super::triangulate::{MAX_CLIPPED_CORNERS, TooManyCorners, Triangulator};
 use lancer_core::geometry::{Bounds, DVec3};
 use lancer_core::mesh::{Mesh, MeshData, MeshError};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The index of an attribute that a corner lacks.
 pub(super) const NONE: u32 = u32::MAX;
@@ -25,6 +28,30 @@ pub(super) struct Corner {
 struct Face {
     first: u32,
     group: u32,
+    smoothing: Smoothing,
+}
+
+/// With which neighbours a face is smooth that has no normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Smoothing(u32);
+
+impl Smoothing {
+    /// None: it is a facet.
+    pub(super) const FACET: Self = Self(0);
+
+    /// Those of its kind that are within the crease angle.
+    pub(super) const BY_ANGLE: Self = Self(u32::MAX);
+
+    /// Those of its group, whatever the angle.
+    pub(super) fn group(number: u32) -> Self {
+        Self(number.clamp(1, u32::MAX - 1))
+    }
+}
+
+impl Default for Smoothing {
+    fn default() -> Self {
+        Self::BY_ANGLE
+    }
 }
 
 /// All polygons of one file.
@@ -32,10 +59,14 @@ struct Face {
 pub(super) struct Polygons {
     /// In double precision, for models far from the origin.
     pub(super) positions: Vec<DVec3>,
+    /// For each position a colour, linear; empty where there are none.
+    pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     /// Of unit length, or zero where the file's was zero.
     pub(super) normals: Vec<[f32; 3]>,
     pub(super) corners: Vec<Corner>,
+    /// How faces are smoothed that are ended from now on.
+    pub(super) smoothing: Smoothing,
     faces: Vec<Face>,
     triangles: usize,
 }
@@ -67,7 +98,7 @@ impl Polygons {
             return false;
         }
         self.triangles += corners - 2;
-        self.faces.push(Face { first: first as u32, group });
+        self.faces.push(Face { first: first as u32, group, smoothing: self.smoothing });
         true
     }
 
@@ -81,6 +112,35 @@ impl Polygons {
         [self.positions.len(), self.uvs.len(), self.normals.len(), self.corners.len()]
             .iter()
             .all(|&length| length < NONE as usize)
+    }
+
+    /// Gives faces without a normal at every corner smooth ones: up to `crease`, or without it as each face's
+    /// [`Smoothing`] says. Where all of them are flat, nothing is changed.
+    ///
+    /// Returns whether any was given.
+    ///
+    /// # Panics
+    /// Where an index is out of range.
+    pub(super) fn smooth(&mut self, crease: Option<Crease>) -> bool {
+        let surface = Surface::new(self, crease);
+        if !(0..surface.count() as u32).any(|face| surface.is_wanted(face)) {
+            return false;
+        }
+        let Some(CornerNormals { normals, of_corner }) = corner_normals(&surface.with_places()) else {
+            return false;
+        };
+        let before = self.normals.len();
+        // More than indices can name are left out: the faces stay facets.
+        if before + normals.len() >= NONE as usize {
+            return false;
+        }
+        self.normals.extend(normals);
+        for (corner, normal) in self.corners.iter_mut().zip(of_corner) {
+            if normal != NO_NORMAL {
+                corner.normal = before as u32 + normal;
+            }
+        }
+        true
     }
 
     /// The meshes: for each group in order, first its polygons with a normal at every corner, then those
@@ -118,6 +178,7 @@ impl Polygons {
             positions: self.positions.iter().map(|position| position.to_array().map(|x| x as f32)).collect(),
             normals: self.normals,
             uvs: self.uvs,
+            colors: self.colors,
             indices: corners.iter().map(|corners| corners.map(|corner| corner.position)).collect(),
         })?;
         Ok(Meshes { meshes: vec![(0, mesh)], origin: DVec3::ZERO })
@@ -125,19 +186,94 @@ impl Polygons {
 
     /// For each face the part that it belongs to.
     fn parts_of_faces(&self) -> Vec<Part> {
-        let has_normal = |corner: &Corner| {
-            self.normals.get(corner.normal as usize).is_some_and(|&normal| normal != [0.0; 3])
-        };
-        let part = |i: usize| {
-            let facets = !self.corners_of(i).iter().all(has_normal);
-            Part { group: self.faces[i].group, facets }
-        };
+        let part = |i: usize| Part { group: self.faces[i].group, facets: !self.has_normals(i) };
         (0..self.faces.len()).map(part).collect()
     }
 
+    /// Whether a face has a normal at every corner.
+    fn has_normals(&self, face: usize) -> bool {
+        self.corners_of(face)
+            .iter()
+            .all(|corner| self.normals.get(corner.normal as usize).is_some_and(|&normal| normal != [0.0; 3]))
+    }
+
     fn corners_of(&self, face: usize) -> &[Corner] {
-        let end = self.faces.get(face + 1).map_or(self.corners.len(), |next| next.first as usize);
-        &self.corners[self.faces[face].first as usize..end]
+        let Range { start, end } = self.range_of(face);
+        &self.corners[start as usize..end as usize]
+    }
+
+    /// Where the corners of a face stand.
+    fn range_of(&self, face: usize) -> Range<u32> {
+        let end = self.faces.get(face + 1).map_or(self.corners.len() as u32, |next| next.first);
+        self.faces[face].first..end
+    }
+}
+
+/// The polygons of a file as their smooth normals depend on them.
+struct Surface<'a> {
+    polygons: &'a Polygons,
+    crease: Option<Crease>,
+    joined_up_to: JoinedUpTo,
+    origin: DVec3,
+    /// For each position its place; positions that are written twice are one place.
+    places: Vec<u32>,
+    /// For each place a position there.
+    positions: Vec<u32>,
+}
+
+impl<'a> Surface<'a> {
+    /// The surface without its places, which take time to find.
+    fn new(polygons: &'a Polygons, crease: Option<Crease>) -> Self {
+        let joined_up_to = JoinedUpTo::new(crease.unwrap_or(Crease::DEFAULT));
+        let (places, positions) = (Vec::new(), Vec::new());
+        Self { polygons, crease, joined_up_to, origin: DVec3::ZERO, places, positions }
+    }
+
+    fn with_places(self) -> Self {
+        let used =
+            self.polygons.corners.iter().map(|corner| self.polygons.positions[corner.position as usize]);
+        let origin = origin_for(Bounds::of_points(used));
+        let bits = |position: &DVec3| position.to_array().map(|x| (x + 0.0).to_bits());
+        let (places, positions) = places_of(self.polygons.positions.iter().map(bits));
+        Self { origin, places, positions, ..self }
+    }
+}
+
+impl Faces for Surface<'_> {
+    fn count(&self) -> usize {
+        self.polygons.faces.len()
+    }
+
+    fn corners(&self, face: u32) -> Range<u32> {
+        self.polygons.range_of(face as usize)
+    }
+
+    fn places(&self) -> usize {
+        self.positions.len()
+    }
+
+    fn place(&self, corner: u32) -> u32 {
+        self.places[self.polygons.corners[corner as usize].position as usize]
+    }
+
+    fn point(&self, place: u32) -> DVec3 {
+        self.polygons.positions[self.positions[place as usize] as usize] - self.origin
+    }
+
+    fn is_wanted(&self, face: u32) -> bool {
+        let is_smooth = match self.crease {
+            Some(crease) => crease != Crease::FACETS,
+            None => self.polygons.faces[face as usize].smoothing != Smoothing::FACET,
+        };
+        is_smooth && !self.polygons.has_normals(face as usize)
+    }
+
+    fn joins(&self, a: u32, b: u32, cosine: f64) -> bool {
+        let [a, b] = [a, b].map(|face| self.polygons.faces[face as usize].smoothing);
+        match self.crease {
+            Some(_) => self.joined_up_to.holds(cosine),
+            None => a == b && (a != Smoothing::BY_ANGLE || self.joined_up_to.holds(cosine)),
+        }
     }
 }
 
@@ -225,11 +361,14 @@ impl<'a> MeshBuilder<'a> {
         };
         let normal = |corner: &Corner| polygons.normals[corner.normal as usize];
         let uv = |corner: &Corner| polygons.uvs.get(corner.uv as usize).copied().unwrap_or_default();
+        let color = |corner: &Corner| polygons.colors[corner.position as usize];
+        let has_colors = !polygons.colors.is_empty();
         let has_uvs = corners.iter().any(|corner| corner.uv != NONE);
         MeshData {
             positions: corners.iter().map(position).collect(),
             normals: if smooth { corners.iter().map(normal).collect() } else { Vec::new() },
             uvs: if has_uvs { corners.iter().map(uv).collect() } else { Vec::new() },
+            colors: if has_colors { corners.iter().map(color).collect() } else { Vec::new() },
             indices,
         }
     }

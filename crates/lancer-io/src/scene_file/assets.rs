@@ -1,6 +1,7 @@
 //! What scene files refer to, as they see it.
 
 use crate::diagnostics::{Diagnostic, LoadError};
+use crate::model::ModelOptions;
 use lancer_core::scene::{ImageTexture, NodeId, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,14 +17,15 @@ pub trait Assets {
     /// is added to it.
     fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String>;
 
-    /// Inserts the model in the file at `path` into `scene`, as one node that is not drawn by itself.
+    /// Inserts the model in the file at `path` into `scene`, as one node that is not drawn by itself. `options` are
+    /// what the scene file says of how it is to be read.
     ///
     /// The model's own materials are added to the scene and named by the nodes of its subtree. Where the scene
     /// file gives a material, the model is drawn from a copy of that subtree without them.
     ///
     /// # Errors
     /// The model cannot be read; told at the place of the reference, along with each diagnostic's own place.
-    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<Model, LoadError>;
+    fn model(&mut self, scene: &mut Scene, path: &Path, options: &ModelOptions) -> Result<Model, LoadError>;
 
     /// The image in the file at `path`.
     ///

@@ -6,6 +6,7 @@ use lancer_core::scene::{ImageTexture, Material, Node, NodeId, Scene};
 use lancer_io::Loaded;
 use lancer_io::diagnostics::{Diagnostic, LoadError};
 use lancer_io::limits::Limits;
+use lancer_io::model::ModelOptions;
 use lancer_io::scene_file::{Assets, Model, Override, read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -27,7 +28,7 @@ impl Assets for Shelf {
         }
     }
 
-    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<Model, LoadError> {
+    fn model(&mut self, scene: &mut Scene, path: &Path, _: &ModelOptions) -> Result<Model, LoadError> {
         self.models_read += 1;
         if path.ends_with("broken.obj") {
             return Err(Diagnostic::new(path, "a face has 2 corners").at(7, 3).into());

@@ -1,6 +1,7 @@
 //! Radiance where it is known: analytic answers first.
 
 mod cancel;
+mod colors;
 mod switches;
 
 use super::*;

@@ -6,6 +6,7 @@ use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::model::polygons::{Corner, NONE, Polygons};
 use crate::model::text::Source;
+use lancer_core::color::srgb_to_linear;
 use lancer_core::geometry::DVec3;
 
 /// Collects the polygons of a file.
@@ -19,6 +20,8 @@ pub(super) struct Reader<'a> {
     is_as_stored: bool,
     has_normals: bool,
     has_uvs: bool,
+    /// How the colours of vertices are written, if they have any.
+    colors: Option<ColorEncoding>,
     small_faces: usize,
     warnings: Vec<Diagnostic>,
 }
@@ -33,6 +36,7 @@ impl<'a> Reader<'a> {
             is_as_stored: false,
             has_normals: false,
             has_uvs: false,
+            colors: None,
             small_faces: 0,
             warnings: Vec::new(),
         }
@@ -92,8 +96,10 @@ impl<'a> Reader<'a> {
         self.vertices = element.count;
         self.has_normals = (0..3).all(|axis| has(Role::Normal(axis)));
         self.has_uvs = (0..2).all(|axis| has(Role::Uv(axis)));
-        if element.properties.iter().any(|property| property.name == "red") {
-            self.warn("colours of vertices are not drawn");
+        if (0..3).all(|channel| has(Role::Color(channel))) {
+            let of_role = |property: &&Property| matches!(Role::of(property), Role::Color(_));
+            let scalars = element.properties.iter().filter(of_role).map(|property| scalar_of(property.kind));
+            self.colors = Some(ColorEncoding::of(scalars, self.is_as_stored));
         }
         Ok(())
     }
@@ -125,6 +131,9 @@ impl<'a> Reader<'a> {
         }
         if self.has_uvs {
             self.polygons.uvs.push(vertex.uv.map(|x| x as f32));
+        }
+        if let Some(encoding) = self.colors {
+            self.polygons.colors.push(vertex.color.map(|x| encoding.decode(x)));
         }
     }
 
@@ -233,6 +242,7 @@ enum Role {
     Position(usize),
     Normal(usize),
     Uv(usize),
+    Color(usize),
     Other,
 }
 
@@ -250,6 +260,9 @@ impl Role {
             "nz" => Self::Normal(2),
             "u" | "s" | "texture_u" | "texture_s" => Self::Uv(0),
             "v" | "t" | "texture_v" | "texture_t" => Self::Uv(1),
+            "red" | "r" | "diffuse_red" => Self::Color(0),
+            "green" | "g" | "diffuse_green" => Self::Color(1),
+            "blue" | "b" | "diffuse_blue" => Self::Color(2),
             _ => Self::Other,
         }
     }
@@ -261,6 +274,7 @@ struct Vertex {
     position: DVec3,
     normal: DVec3,
     uv: [f64; 2],
+    color: [f64; 3],
 }
 
 impl Vertex {
@@ -270,7 +284,41 @@ impl Vertex {
             Role::Position(axis) => Some(&mut self.position[axis]),
             Role::Normal(axis) => Some(&mut self.normal[axis]),
             Role::Uv(axis) => Some(&mut self.uv[axis]),
+            Role::Color(channel) => Some(&mut self.color[channel]),
             Role::Other => None,
+        }
+    }
+}
+
+/// How a file writes the channels of its colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ColorEncoding {
+    /// From 0 to this, encoded in sRGB.
+    Srgb { most: f64 },
+    /// Numbers of a mesh, as they are.
+    AsStored,
+}
+
+impl ColorEncoding {
+    /// The encoding of channels of these types. Whole numbers are fractions of the largest of their type, as a rule
+    /// 255; others of 1.
+    fn of(mut scalars: impl Iterator<Item = Scalar>, is_as_stored: bool) -> Self {
+        if is_as_stored {
+            return Self::AsStored;
+        }
+        Self::Srgb {
+            most: match scalars.next() {
+                Some(Scalar::F32 | Scalar::F64) | None => 1.0,
+                Some(Scalar::U16) => 65_535.0,
+                Some(_) => 255.0,
+            },
+        }
+    }
+
+    fn decode(self, channel: f64) -> f32 {
+        match self {
+            Self::Srgb { most } => srgb_to_linear((channel / most).clamp(0.0, 1.0)) as f32,
+            Self::AsStored => channel as f32,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Models of other files, each read once.
 
 use super::{Builder, Warning, problems_of_reference};
+use crate::model::ModelOptions;
 use crate::scene_file::deserialize::Spanned;
 use lancer_core::scene::{Node, NodeId, Scene};
 use std::collections::HashMap;
@@ -35,7 +36,7 @@ impl Builder<'_> {
     }
 
     fn read_model(&mut self, reference: &Spanned<String>, path: &std::path::Path) -> Option<NodeId> {
-        match self.source.assets.model(&mut self.scene, path) {
+        match self.source.assets.model(&mut self.scene, path, &ModelOptions::default()) {
             Ok(model) => {
                 self.warnings.extend(model.warnings.into_iter().map(Warning::Elsewhere));
                 Some(model.root)

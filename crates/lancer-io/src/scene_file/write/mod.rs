@@ -12,6 +12,7 @@ use super::syntax::{Language, block, flow};
 use super::{Assets, Model, read};
 use crate::diagnostics::LoadError;
 use crate::limits::Limits;
+use crate::model::ModelOptions;
 use crate::output::{WriteError, write_atomically};
 use lancer_core::scene::{ImageTexture, Node, Scene};
 use parts::{Part, Parts};
@@ -90,7 +91,7 @@ impl Assets for InMemory<'_> {
         Ok(reference.into())
     }
 
-    fn model(&mut self, scene: &mut Scene, path: &Path) -> Result<Model, LoadError> {
+    fn model(&mut self, scene: &mut Scene, path: &Path, _: &ModelOptions) -> Result<Model, LoadError> {
         let Part::Mesh { mesh, .. } = self.part(path)? else {
             return Err(LoadError::new(path, "is no mesh"));
         };

@@ -12,7 +12,7 @@ pub use state::{FilePicker, Place, Purpose};
 use crate::Phrase;
 use lancer_io::SCENE_EXTENSIONS;
 use lancer_io::image::ImageFormat;
-use lancer_io::model::ModelFormat;
+use lancer_io::model::model_extensions;
 
 impl Purpose {
     /// The heading of the dialog.
@@ -35,9 +35,7 @@ impl Purpose {
     /// The extensions of the files that it is about; the first is added where one is missing.
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            Self::Open => {
-                SCENE_EXTENSIONS.into_iter().chain(ModelFormat::ALL.map(ModelFormat::extension)).collect()
-            }
+            Self::Open => SCENE_EXTENSIONS.into_iter().chain(model_extensions()).collect(),
             Self::SavePicture => ImageFormat::EXTENSIONS.to_vec(),
             Self::SaveScene => vec!["yaml", "yml"],
         }
