@@ -110,11 +110,15 @@ fn watched<T>(
     progress: &Progress,
     render: impl FnOnce(&Control) -> Result<T, Error>,
 ) -> Result<T, Error> {
-    let _handled = interrupt::cancels(cancel);
+    let handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
     let on_tile = |tile: &Tile, rays: &RayCounts| bar.advance(tile, rays);
-    render(&Control { cancel: cancel.clone(), on_tile: &on_tile, tile_size })
+    let picture = render(&Control { cancel: cancel.clone(), on_tile: &on_tile, tile_size })?;
+    // From here on, a request to stop ends the program. One that came after the last tile has looked must not be
+    // lost: what follows may wait for a reader for ever.
+    drop(handled);
+    if cancel.is_cancelled() { Err(Error::Interrupted) } else { Ok(picture) }
 }
 
 fn tell(report: &Report) -> Result<(), Error> {
