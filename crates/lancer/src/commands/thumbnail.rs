@@ -18,8 +18,8 @@ use lancer_io::diagnostics::LoadError;
 use lancer_io::image::cutout::{Cutout, write_cutout};
 use lancer_io::image::encode::write;
 use lancer_io::image::{ImageFormat, Metadata};
-use lancer_io::showcase::{framing_camera, hide_ground};
 use lancer_io::is_scene_file;
+use lancer_io::showcase::{framing_camera, hide_ground};
 
 /// The most subpixels along a pixel's side, and what a model gets: its edges are all that is seen of it at first.
 const SAMPLES: u32 = 3;
