@@ -1,7 +1,7 @@
-"""Compares the report's formulas (formulas.toml) with the code that computes them.
+"""Compares the report's formulas (formulas.toml) with the code that computes them, and with the guide.
 
-Each formula names a file, and text that must stand in it. Where the code's documentation writes the formula out, the two
-are also compared term by term. And each formula must be used by both languages, and be in the table of README.md.
+Each formula names a file, and text that must stand in it. Where the code's documentation and the guide write the formula
+out, they are also compared term by term. And each formula must be used by both languages, and be in the table of README.md.
 """
 import pathlib
 import re
@@ -10,6 +10,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REPORT = ROOT / "report"
+GUIDE = pathlib.Path("docs/how-it-works")
 
 
 def text_of(path):
@@ -41,18 +42,20 @@ def faults():
             if terms(formula["typst"]) != terms(formula["plain"]):
                 yield f"{name}: `{formula['typst']}` and `{formula['plain']}` differ"
             documented = formula.get("plain_file", formula["file"])
-            if formula["plain"] not in text_of(ROOT / documented):
-                yield f"{name}: `{formula['plain']}` is not in {documented}"
+            for place in (documented, GUIDE / formula["guide"]):
+                if formula["plain"] not in text_of(ROOT / place):
+                    yield f"{name}: `{formula['plain']}` is not in {place}"
         if not any(f"| {name} |" in line and formula["file"] in line for line in readme.splitlines()):
             yield f"{name}: report/README.md does not say that it is in {formula['file']}"
         for source, text in sources.items():
             if f'"{name}"' not in model + text:
                 yield f"{name}: {source} does not use it"
-    # The parts of the model, put together, are the formula that the code's documentation opens with.
+    # The parts of the model, put together, are the formula that the code's documentation and the guide's chapter open with.
     parts = [formulas[part]["plain"] for part in ("ambient", "lights", "diffuse", "specular", "recursive")]
     whole = "L = {} + {} [ {} + {} ]".format(*parts[:4])
-    if whole not in text_of(ROOT / formulas["ambient"]["file"]):
-        yield f"the model, `{whole}`, is not in {formulas['ambient']['file']}"
+    for place in (formulas["ambient"]["file"], GUIDE / formulas["ambient"]["guide"]):
+        if whole not in text_of(ROOT / place):
+            yield f"the model, `{whole}`, is not in {place}"
 
 
 found = list(faults())
