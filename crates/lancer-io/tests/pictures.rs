@@ -317,6 +317,13 @@ fn pictures_of_ten_thousand_million_pixels_are_refused_by_their_headers() {
     }
 }
 
+#[test]
+fn a_radiance_header_without_an_end_is_refused() {
+    let endless = [&b"#?RADIANCE\n"[..], &b"A=b\n".repeat(1 << 20)].concat();
+    assert!(refused(&endless).contains("header does not end"));
+    assert_eq!(provenance_of(&endless), None);
+}
+
 /// The chunk of a PNG, as it is to stand after the header.
 fn with_chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     let mut png = encoded(ImageFormat::Png, &picture(20, 10), Tone::default(), &Metadata::default());

@@ -52,7 +52,7 @@ fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, L
     let format = format_of(path, bytes)?;
     let broken = |error: ImageError| LoadError::new(path, message_of(&error));
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(decoder_limits(most_pixels));
+    reader.limits(decoder_limits(format, bytes, most_pixels));
 
     let decoder = reader.into_decoder().map_err(broken)?;
     let (width, height) = decoder.dimensions();
@@ -68,11 +68,23 @@ fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, L
     DynamicImage::from_decoder(decoder).map_err(broken)
 }
 
-/// What a decoder may hold for an image of so many pixels.
-pub(super) fn decoder_limits(most_pixels: u64) -> DecoderLimits {
+/// What a decoder may hold for an image.
+///
+/// That of a PNG unpacks the colour profile before it tells how large the image is, so its limit goes by the header:
+/// a small image has no right to a profile of hundreds of megabytes.
+pub(super) fn decoder_limits(format: ImageFormat, bytes: &[u8], most_pixels: u64) -> DecoderLimits {
+    let own = pixels_of_png(bytes).filter(|_| format == ImageFormat::Png);
+    let pixels = own.map_or(most_pixels, |own| own.min(most_pixels));
     let mut limits = DecoderLimits::default();
-    limits.max_alloc = Some(most_pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(DECODER_OVERHEAD));
+    limits.max_alloc = Some(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(DECODER_OVERHEAD));
     limits
+}
+
+/// The pixels that the header of a PNG tells of.
+fn pixels_of_png(bytes: &[u8]) -> Option<u64> {
+    let side = |at: usize| Some(u64::from(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?)));
+    // Behind the signature, and the length and name of the first chunk.
+    Some(side(16)? * side(20)?)
 }
 
 fn format_of(path: &Path, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
@@ -103,4 +115,20 @@ fn format_of(path: &Path, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
 pub(super) fn message_of(error: &ImageError) -> String {
     let words = error.to_string();
     format!("is a broken image: {}", words.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_decoder_of_a_small_png_may_hold_little() {
+        let header = |side: u32| [&[0; 16][..], &side.to_be_bytes(), &side.to_be_bytes()].concat();
+        let limit = |format, bytes: &[u8]| decoder_limits(format, bytes, 1 << 26).max_alloc.unwrap();
+        assert_eq!(limit(ImageFormat::Png, &header(10)), 800 + DECODER_OVERHEAD);
+        let most = (8 << 26) + DECODER_OVERHEAD;
+        assert_eq!(limit(ImageFormat::Png, &header(u32::MAX)), most);
+        assert_eq!(limit(ImageFormat::Png, &header(10)[..20]), most);
+        assert_eq!(limit(ImageFormat::Jpeg, &header(10)), most);
+    }
 }

@@ -89,8 +89,11 @@ fn check_size(width: u64, height: u64, most_pixels: u64) -> Result<(), String> {
 
 fn read(format: ImageFormat, bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
     let broken = |error: ImageError| message_of(&error);
+    if format == ImageFormat::Hdr && !hdr_header(bytes).windows(2).any(|pair| pair == b"\n\n") {
+        return Err(format!("is a broken image: its header does not end within {MOST_HEADER} bytes"));
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(decoder_limits(most_pixels));
+    reader.limits(decoder_limits(format, bytes, most_pixels));
     let decoder = reader.into_decoder().map_err(broken)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height), most_pixels)?;
@@ -161,10 +164,17 @@ fn of_png(bytes: &[u8]) -> Option<String> {
 /// The most bytes of text that are looked through for what a picture says of itself.
 const MOST_TEXT: usize = 16 << 20;
 
+/// The longest header of a Radiance HDR: its decoder keeps every line.
+const MOST_HEADER: usize = 1 << 20;
+
+/// As much of a Radiance HDR as can be its header.
+fn hdr_header(bytes: &[u8]) -> &[u8] {
+    &bytes[..bytes.len().min(MOST_HEADER)]
+}
+
 /// The line of the header of a Radiance HDR.
 fn of_hdr(bytes: &[u8]) -> Option<String> {
-    let head = &bytes[..bytes.len().min(MOST_TEXT)];
-    let lines = head.split(|&byte| byte == b'\n').take_while(|line| !line.is_empty());
+    let lines = hdr_header(bytes).split(|&byte| byte == b'\n').take_while(|line| !line.is_empty());
     let mut found = lines.filter_map(|line| line.strip_prefix(HDR_PROVENANCE.as_bytes())?.strip_prefix(b"="));
     String::from_utf8(found.next()?.to_vec()).ok()
 }
