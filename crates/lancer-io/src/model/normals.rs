@@ -221,17 +221,17 @@ impl Fan {
     ) -> bool {
         self.sums.clear();
         self.sums.resize(corners.len(), (DVec3::ZERO, NO_NORMAL));
-        let normal_of = |number: usize| face_normals[corners[number].face as usize];
-        for number in 0..corners.len() {
-            let normal = normal_of(number);
-            let angle = angle_at(faces, corners[number], place, normal);
+        let normal_of = |corner: &FaceCorner| face_normals[corner.face as usize];
+        for (number, &corner) in corners.iter().enumerate() {
+            let normal = normal_of(&corner);
+            let angle = angle_at(faces, corner, place, normal);
             let first = self.first_of(number as u32);
             self.sums[first as usize].0 += normal * angle;
         }
         let mut any = NO_NORMAL;
         let mut is_flat = true;
-        for number in 0..corners.len() {
-            let normal = normal_of(number);
+        for (number, corner) in corners.iter().enumerate() {
+            let normal = normal_of(corner);
             if normal == DVec3::ZERO {
                 continue;
             }
@@ -244,15 +244,15 @@ impl Fan {
                 found.normals.push(sum.to_array().map(|x| x as f32));
             }
             is_flat &= sum.dot(normal) >= FLAT;
-            found.of_corner[corners[number].corner as usize] = *index;
+            found.of_corner[corner.corner as usize] = *index;
             any = any.min(*index);
         }
-        for number in (0..corners.len()).filter(|&number| normal_of(number) == DVec3::ZERO) {
+        for corner in corners.iter().filter(|&corner| normal_of(corner) == DVec3::ZERO) {
             if any == NO_NORMAL {
                 any = found.normals.len() as u32;
                 found.normals.push([0.0, 1.0, 0.0]);
             }
-            found.of_corner[corners[number].corner as usize] = any;
+            found.of_corner[corner.corner as usize] = any;
         }
         is_flat
     }
