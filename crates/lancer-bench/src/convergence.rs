@@ -5,11 +5,13 @@
 
 use crate::Failure;
 use crate::plot::{Curve, Labels, svg};
+use crate::record::{command_line, growth, write};
 use lancer_core::geometry::{DVec3, Ray, Transform};
 use lancer_core::integrator::{AmbientOcclusionSampler, RayCounts};
 use lancer_core::sampling::{Key, Stream};
 use lancer_core::scene::{AmbientOcclusion, Node, Scene, Shape};
 use lancer_core::world::{CompileOptions, Intersection, World};
+use serde_json::json;
 use std::f64::consts::FRAC_1_PI;
 use std::path::Path;
 
@@ -27,7 +29,7 @@ struct Site {
 }
 
 #[expect(clippy::print_stdout, reason = "the table is what the command is for")]
-pub(crate) fn measure(output: &Path) -> Result<(), Failure> {
+pub(crate) fn measure(output: &Path, data: Option<&Path>) -> Result<(), Failure> {
     let sites = sites()?;
     let mut lattice =
         Curve { name: "shifted spherical Fibonacci lattice", color: "#0b6e99", points: Vec::new() };
@@ -40,6 +42,15 @@ pub(crate) fn measure(output: &Path) -> Result<(), Failure> {
         println!("{n:>6}  {by_lattice:>12.6}  {by_chance:>12.6}  {:>6.1}", by_chance / by_lattice);
         lattice.points.push((f64::from(n), by_lattice));
         independent.points.push((f64::from(n), by_chance));
+    }
+    let exponents = [&lattice, &independent].map(|curve| growth(&curve.points));
+    println!("error ~ N^e: {:.2} and {:.2}", exponents[0], exponents[1]);
+    if let Some(path) = data {
+        let rows = lattice.points.iter().zip(&independent.points).map(|(&(n, by_lattice), &(_, by_chance))| {
+            json!({ "samples": n, "lattice": by_lattice, "independent": by_chance })
+        });
+        let rows: Vec<_> = rows.collect();
+        write(path, json!({ "command": command_line(), "rows": rows, "exponents": exponents }))?;
     }
     let labels = Labels {
         title: "Ambient occlusion: root mean square error of c_a",

@@ -7,6 +7,7 @@
 
 mod convergence;
 mod embree;
+mod figures;
 mod first_light;
 mod peers;
 mod plot;
@@ -79,6 +80,33 @@ enum Command {
         /// The plot.
         #[arg(long, default_value = "docs/images/ao-convergence.svg")]
         output: PathBuf,
+        /// Write the figures into this file too.
+        #[arg(long)]
+        data: Option<PathBuf>,
+    },
+    /// What a k-d tree costs against the bounds of its leaves and its depth: steps and tests a ray.
+    KdTree {
+        /// Triangles of the generated mesh, in thousands.
+        #[arg(long, default_value_t = 100)]
+        thousands: u32,
+        /// Repetitions of what is timed; the median counts.
+        #[arg(long, default_value_t = 3)]
+        runs: usize,
+        /// Write the figures into this file too.
+        #[arg(long)]
+        data: Option<PathBuf>,
+    },
+    /// How the time of a ray grows with the number of triangles, for each accelerator, on one thread.
+    Growth {
+        /// The most triangles.
+        #[arg(long, default_value_t = 2_200_000)]
+        most: u32,
+        /// Repetitions; the least time counts.
+        #[arg(long, default_value_t = 9)]
+        runs: usize,
+        /// Write the figures into this file too.
+        #[arg(long)]
+        data: Option<PathBuf>,
     },
     /// Lancer's program against POV-Ray, Tachyon, Mitsuba and Cycles on matched scenes.
     Peers(peers::Plan),
@@ -148,7 +176,11 @@ fn main() -> Result<(), Failure> {
         }
         Command::Scale { most, versus } => versus::measure_scale(&versus.plan(Vec::new()), most),
         Command::FirstLight { versus } => versus::measure_first_light(&versus.plan(Vec::new())),
-        Command::Convergence { output } => convergence::measure(&output),
+        Command::Convergence { output, data } => convergence::measure(&output, data.as_deref()),
+        Command::KdTree { thousands, runs, data } => {
+            figures::measure_kd_tree(thousands * 1000, runs.max(1), data.as_deref())
+        }
+        Command::Growth { most, runs, data } => figures::measure_growth(most, runs.max(1), data.as_deref()),
         Command::Peers(plan) => peers::measure(&plan),
         Command::Window(plan) => window::measure(&plan),
     }

@@ -69,22 +69,27 @@ pub(crate) fn keep(directory: &Path, name: &str, rows: &[Value]) -> Result<PathB
 /// As [`keep`], with fields of the measurement's own beside the time, the machine and the version.
 pub(crate) fn keep_fields(directory: &Path, name: &str, fields: Value) -> Result<PathBuf, Failure> {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs();
-    let mut record = json!({
-        "unix_time": seconds,
-        "machine": processor_name(),
-        "version": env!("CARGO_PKG_VERSION"),
-    });
+    std::fs::create_dir_all(directory)?;
+    let path = directory.join(format!("{name}-{seconds}.json"));
+    let mut record = json!({ "unix_time": seconds });
     if let (Value::Object(record), Value::Object(fields)) = (&mut record, fields) {
         record.extend(fields);
     }
-    std::fs::create_dir_all(directory)?;
-    let path = directory.join(format!("{name}-{seconds}.json"));
-    std::fs::write(&path, serde_json::to_string_pretty(&record)? + "\n")?;
+    write(&path, record)?;
     Ok(path)
 }
 
+/// Writes fields, the machine and the version into a file of their own: the figures of a plot.
+pub(crate) fn write(path: &Path, fields: Value) -> Result<(), Failure> {
+    let mut record = json!({ "machine": processor_name(), "version": env!("CARGO_PKG_VERSION") });
+    if let (Value::Object(record), Value::Object(fields)) = (&mut record, fields) {
+        record.extend(fields);
+    }
+    Ok(std::fs::write(path, serde_json::to_string_pretty(&record)? + "\n")?)
+}
+
 /// The command as typed, without the directories of this machine.
-fn command_line() -> String {
+pub(crate) fn command_line() -> String {
     let name = |word: String| match Path::new(&word).file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
         None => word,

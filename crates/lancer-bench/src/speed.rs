@@ -133,7 +133,7 @@ impl Row {
 }
 
 /// The mesh alone, framed from the front and above, with one light.
-fn scene_of(subject: &Subject) -> Scene {
+pub(crate) fn scene_of(subject: &Subject) -> Scene {
     let bounds = subject.mesh.bounds();
     let (center, diagonal) = (bounds.center(), bounds.diagonal());
     let mut scene = Scene::new(subject.name.clone());

@@ -20,7 +20,7 @@ impl Rgb {
     /// One in all channels.
     pub const WHITE: Self = Self::grey(1.0);
 
-    /// The three channels.
+    /// A colour of three linear channels, which may exceed 1.
     pub const fn new(r: f64, g: f64, b: f64) -> Self {
         Self { r, g, b }
     }
@@ -36,7 +36,7 @@ impl Rgb {
         Self::new(channel(16), channel(8), channel(0))
     }
 
-    /// The channels in an array.
+    /// Red, green and blue.
     pub const fn to_array(self) -> [f64; 3] {
         [self.r, self.g, self.b]
     }

@@ -33,7 +33,7 @@ impl InstructionSet {
         self.level().is_some()
     }
 
-    /// The name on the command line.
+    /// The name by which the command line's `--instructions` chooses it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",

@@ -2,6 +2,15 @@
 //!
 //! Each is a file in `scenes/` that implements [`BuiltinScene`], and a line in [`SCENES`]. To add your own, write
 //! such a file and such a line; `docs/add-a-scene.md` shows how.
+//!
+//! ```
+//! use lancer_core::world::{CompileOptions, World};
+//!
+//! let scene = lancer_gallery::find("whitted").expect("it is listed").build();
+//! let world = World::compile(&scene, &CompileOptions::default())?;
+//! assert_eq!(world.lights().len(), scene.lights.len());
+//! # Ok::<(), lancer_core::world::CompileError>(())
+//! ```
 
 mod parts;
 mod scenes;

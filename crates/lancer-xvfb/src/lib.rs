@@ -1,11 +1,13 @@
 //! A virtual display with a person before it: the window as its users meet it, for tests, benchmarks and pictures.
 //!
 //! A [`Display`] is an X server without a screen; a [`Program`] runs on it, with a home of its own. Their pictures
-//! are read through the X protocol, keys and mouse are moved by `xdotool`, and files are dropped by a [`FileDrag`]. Nothing
+//! are read through the X protocol, keys and mouse are moved by `xdotool`, files are dropped by a [`FileDrag`], and what
+//! was copied is pasted by [`Display::clipboard`]. Nothing
 //! here waits for a fixed time: [`Program::settle`] and [`wait_for`] wait for what can be seen.
 //!
 //! It knows nothing of what the window shows. Only Linux has `/proc`, which says when a program rests.
 
+mod clipboard;
 mod display;
 mod drag;
 mod hands;

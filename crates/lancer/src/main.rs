@@ -8,6 +8,8 @@ mod args;
 mod bug;
 mod commands;
 mod destination;
+#[cfg(test)]
+mod documents;
 mod error;
 mod interrupt;
 mod job;

@@ -52,8 +52,12 @@ struct Run {
     refinements: Vec<f64>,
     /// Between the pictures that are seen while the mouse moves on and on.
     gaps: Vec<f64>,
-    /// From a move of the mouse onto a menu until it lights up, from the first moment of another start on.
+    /// ... until a menu lights up for the first time, the mouse having come to it when the window was seen.
+    ready: f64,
+    /// From each further move of the mouse onto a menu until it lights up.
     answers: Vec<f64>,
+    /// From the key that cancels until the window is back, for a render, and for the reading of a file.
+    cancels: Vec<f64>,
     /// Processors in use while nothing happens: 1 is all of one.
     idle: f64,
 }
@@ -66,9 +70,9 @@ pub(crate) fn measure(plan: &Plan) -> Result<(), Failure> {
         plan.width, plan.height
     );
     println!(
-        "| scene | window, s | first picture, s | sharp, s | move to change, ms | slowest | let go to sharp, ms | in a drag, 1/s | longest gap, ms | slowest answer, ms | idle |"
+        "| scene | window, s | answers, s | first picture, s | sharp, s | move to change, ms | slowest | let go to sharp, ms | in a drag, 1/s | longest gap, ms | slowest answer, ms | slowest cancel, ms | idle |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     let mut records = Vec::new();
     for scene in &plan.scenes {
         let runs = (0..plan.runs.max(1)).map(|_| run(plan, &lancer, scene)).collect::<Result<Vec<_>, _>>()?;
@@ -91,8 +95,13 @@ fn run(plan: &Plan, lancer: &Path, scene: &str) -> Result<Run, Failure> {
     let (changes, refinements) = moves.into_iter().unzip();
     let gaps = session.watch_drag()?;
     let idle = session.watch_idleness()?;
+    let mut cancels = vec![session.watch_cancelled_render()?];
     drop(session);
-    let answers = Session::start(&display, lancer, scene, middle(&display))?.watch_answers()?;
+    let start = || Session::start(&display, lancer, scene, middle(&display));
+    let (ready, answers) = start()?.watch_answers()?;
+    if Path::new(scene).is_file() {
+        cancels.push(start()?.watch_cancelled_reading()?);
+    }
     Ok(Run {
         window: started.window,
         first_picture: started.first_picture,
@@ -100,7 +109,9 @@ fn run(plan: &Plan, lancer: &Path, scene: &str) -> Result<Run, Failure> {
         changes,
         refinements,
         gaps,
+        ready,
         answers,
+        cancels,
         idle,
     })
 }
@@ -119,8 +130,9 @@ fn row(name: &str, runs: &[Run]) -> String {
         [all(|run| &run.changes), all(|run| &run.refinements), all(|run| &run.gaps)];
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     format!(
-        "| {name} | {:.2} | {:.2} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1}% |",
+        "| {name} | {:.2} | {:.2} | {:.2} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1}% |",
         of(|run| run.window),
+        of(|run| run.ready),
         of(|run| run.first_picture),
         of(|run| run.sharp),
         1e3 * median(&changes),
@@ -129,6 +141,7 @@ fn row(name: &str, runs: &[Run]) -> String {
         1.0 / median(&gaps),
         1e3 * most(&gaps),
         1e3 * most(&all(|run| &run.answers)),
+        1e3 * most(&all(|run| &run.cancels)),
         100.0 * of(|run| run.idle),
     )
 }
@@ -143,7 +156,9 @@ impl Run {
             "change_seconds": self.changes,
             "refinement_seconds": self.refinements,
             "drag_gap_seconds": self.gaps,
+            "ready_seconds": self.ready,
             "answer_seconds": self.answers,
+            "cancel_seconds": self.cancels,
             "idle_processors": self.idle,
         })
     }

@@ -29,6 +29,12 @@ const BETWEEN_MOVES: Duration = Duration::from_millis(16);
 const MENUS: Area = Area { x: 0, y: 0, width: 160, height: 24 };
 const TWO_MENUS: [(i32, i32); 2] = [(20, 12), (60, 12)];
 
+/// Where the program says what it is reading, and nothing once that is cancelled.
+const STATUS: Area = Area { x: 0, y: 778, width: 300, height: 20 };
+
+/// How long something has gone on when it is cancelled.
+const BEFORE_CANCEL: Duration = Duration::from_millis(500);
+
 /// How long the interface is asked for answers: while a large model is read and compiled, and then refined.
 const ASKING: Duration = Duration::from_secs(5);
 
@@ -76,24 +82,64 @@ impl<'a> Session<'a> {
         Ok(Started { window, first_picture, sharp: sharp.as_secs_f64() })
     }
 
-    /// Moves the mouse from menu to menu, from the moment when the window is seen. Returns the seconds until each
-    /// lights up.
-    pub(super) fn watch_answers(&mut self) -> Result<Vec<f64>, Failure> {
+    /// Moves the mouse from menu to menu, from the moment when the window is seen. Returns the seconds from the
+    /// program's start until the first of them lights up, and from each further move until its menu does.
+    pub(super) fn watch_answers(&mut self) -> Result<(f64, Vec<f64>), Failure> {
         self.program.place_window(self.display.area())?;
         let look = || self.display.picture_of(MENUS);
         wait_for("the menus", || Ok((look()?.colours() > 2).then_some(())))?;
-        let begun = Instant::now();
-        let mut answers = Vec::new();
-        for &menu in TWO_MENUS.iter().cycle() {
+        let answer_to = |menu| -> Result<(Instant, Instant), Failure> {
             let before = look()?;
             let moved = Instant::now();
             self.display.warp_to(menu)?;
-            answers.push((wait_for_change(look, &before)? - moved).as_secs_f64());
-            if begun.elapsed() > ASKING {
+            Ok((moved, wait_for_change(look, &before)?))
+        };
+        let (_, ready) = answer_to(TWO_MENUS[0])?;
+        let mut answers = Vec::new();
+        for &menu in TWO_MENUS.iter().cycle().skip(1) {
+            let (moved, answered) = answer_to(menu)?;
+            answers.push((answered - moved).as_secs_f64());
+            if ready.elapsed() > ASKING {
                 break;
             }
         }
-        Ok(answers)
+        Ok(((ready - self.begun).as_secs_f64(), answers))
+    }
+
+    /// Cancels the reading of the file that the program was started on. Returns the seconds from the key until the
+    /// program has stopped speaking of it.
+    pub(super) fn watch_cancelled_reading(&mut self) -> Result<f64, Failure> {
+        self.program.place_window(self.display.area())?;
+        let says_something =
+            || -> Result<bool, Failure> { Ok(self.display.picture_of(STATUS)?.colours() > 2) };
+        wait_for("what is being read", || Ok(says_something()?.then_some(())))?;
+        sleep(BEFORE_CANCEL);
+        if !says_something()? {
+            return Err("the file was read before its reading was cancelled; take a larger one".into());
+        }
+        let asked = Instant::now();
+        self.display.keys(&["Escape"])?;
+        wait_for("the end of the reading", || Ok((!says_something()?).then(|| asked.elapsed().as_secs_f64())))
+    }
+
+    /// Renders, and cancels that. Returns the seconds from the key until the button to render is there again.
+    pub(super) fn watch_cancelled_render(&mut self) -> Result<f64, Failure> {
+        let (width, height) = self.display.size();
+        let button = Area { x: width - 300, y: height - 70, width: 290, height: 34 };
+        let look = || self.display.picture_of(button);
+        self.display.move_to(self.at)?;
+        let before = look()?;
+        self.display.keys(&["F12"])?;
+        wait_for_change(look, &before)?;
+        sleep(BEFORE_CANCEL);
+        if look()?.difference(&before) <= CHANGE {
+            return Err("the render was done before it was cancelled; take one that takes longer".into());
+        }
+        let asked = Instant::now();
+        self.display.keys(&["Escape"])?;
+        wait_for("the end of the render", || {
+            Ok((look()?.difference(&before) <= CHANGE).then(|| asked.elapsed().as_secs_f64()))
+        })
     }
 
     /// Moves the mouse once, the left button held, and lets it go. Returns the seconds from the move until the

@@ -59,7 +59,7 @@ impl Aabb {
         [below, above]
     }
 
-    /// Half of the area of its surface.
+    /// Half of the area of its surface: what the surface area heuristic compares.
     pub fn half_area(&self) -> f32 {
         let [x, y, z] = std::array::from_fn(|axis| self.max[axis] - self.min[axis]);
         x * y + y * z + z * x

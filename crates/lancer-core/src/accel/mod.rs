@@ -25,7 +25,7 @@ impl Accelerator {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Bvh, Self::KdTree, Self::BruteForce];
 
-    /// The name on the command line.
+    /// The name by which the command line's `--accel` chooses it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bvh => "bvh",

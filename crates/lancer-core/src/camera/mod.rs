@@ -23,7 +23,7 @@ impl Default for Camera {
     }
 }
 
-/// Why a camera makes no picture.
+/// Why a camera makes no picture; its words can be shown to a user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CameraError {
     /// A coordinate is NaN or infinite.

@@ -18,12 +18,12 @@ impl Bounds {
     /// The box that holds all of space.
     pub const UNBOUNDED: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
-    /// The box between two corners.
+    /// The box between two corners; empty where `min` exceeds `max` on any axis.
     pub fn new(min: DVec3, max: DVec3) -> Self {
         Self { min, max }
     }
 
-    /// The least box around some points.
+    /// The least box around some points; [`Bounds::EMPTY`] where there are none.
     pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::including)
     }
@@ -33,7 +33,7 @@ impl Bounds {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The least box around two.
+    /// The least box around two. An empty one counts for nothing.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
@@ -48,22 +48,22 @@ impl Bounds {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// The middle.
+    /// The middle. Not finite where the box is empty or unbounded.
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// The lengths of the edges.
+    /// The lengths of the edges, by axis; negative where the box is empty.
     pub fn extent(&self) -> DVec3 {
         self.max - self.min
     }
 
-    /// The length from corner to corner.
+    /// The length from corner to corner, in units of the space that the box is in.
     pub fn diagonal(&self) -> f64 {
         self.extent().length()
     }
 
-    /// The eight corners.
+    /// The eight corners: bit 0 of the place says whether x is the greater one, bit 1 y, bit 2 z.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
             let pick = |bit: usize, min: f64, max: f64| if i >> bit & 1 == 0 { min } else { max };

@@ -17,7 +17,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// A ray without an end.
+    /// A ray without an end; `direction` has any length but zero, and t counts in lengths of it.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, t_max: f64::INFINITY }
     }

@@ -30,7 +30,7 @@ impl Transform {
         Self(DAffine3::from_translation(offset))
     }
 
-    /// Scales by one factor an axis; negative factors mirror.
+    /// Scales by one factor an axis; negative factors mirror, and one of 0 makes the transform singular.
     pub fn scale(factors: DVec3) -> Self {
         Self(DAffine3::from_scale(factors))
     }
@@ -62,7 +62,7 @@ impl Transform {
         Self(DAffine3 { matrix3: DMat3::from_cols(x, y, z), translation })
     }
 
-    /// This transform, then `next`.
+    /// This transform, then `next`: the order in which they apply to the object.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self(next.0 * self.0)

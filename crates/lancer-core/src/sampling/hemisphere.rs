@@ -173,6 +173,19 @@ mod tests {
     }
 
     #[test]
+    fn with_nothing_in_reach_the_factor_is_within_two_over_n_of_one() {
+        for samples in [2, 16, 64, 256] {
+            for key in 0..200 {
+                let sum: f64 =
+                    directions(samples, DVec3::Y, key).iter().map(|(_, elevation)| elevation).sum();
+                let (n, shift) = (f64::from(samples), Key::camera(key, 0, 0).stream().next_unit());
+                let factor = 4.0 * sum / n;
+                assert!((factor - (1.0 + (2.0 - 4.0 * shift) / n)).abs() < 1e-12, "N = {samples}: {factor}");
+            }
+        }
+    }
+
+    #[test]
     fn sums_over_the_directions_are_unbiased() {
         // Over the whole sphere, with n the normal: the mean of (n . w)+ is 1/4, and of (n . w)+ (t . w)^2 for a
         // tangent t it is 1/16.

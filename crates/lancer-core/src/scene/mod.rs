@@ -74,18 +74,19 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A scene with nothing in it.
+    /// A scene with nothing in it: no object, no light, black all around, and the default camera and settings.
     pub fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// Adds a material, for nodes to name.
+    /// Adds a material, for nodes to name. Its name may be that of another: ids tell them apart.
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId(index_of_last(self.materials.len()))
     }
 
-    /// Adds a nameless point light.
+    /// Adds a nameless point light, at a position in the world. At a distance r, an intensity of pi r^2 makes a
+    /// white surface that faces it just white.
     pub fn add_light(&mut self, position: DVec3, intensity: Rgb) {
         self.lights.push(Light { name: String::new(), position, intensity });
     }
@@ -96,14 +97,14 @@ impl Scene {
         NodeId(index_of_last(self.nodes.len()))
     }
 
-    /// Adds a node at the top of the tree.
+    /// Adds a node at the top of the tree, where it is drawn, in the space of the world.
     pub fn add(&mut self, node: Node) -> NodeId {
         let id = self.insert(node);
         self.roots.push(id);
         id
     }
 
-    /// Adds a node as a child of `parent`.
+    /// Adds a node as the last child of `parent`: it is drawn wherever `parent` is, in its space.
     ///
     /// # Panics
     /// Where `parent` is of another scene and out of range here.
@@ -167,7 +168,7 @@ impl Scene {
         &mut self.nodes[id.index()]
     }
 
-    /// The camera of that name, or without a name the main one.
+    /// The camera of that name, or without a name the main one; none where there is no such camera.
     pub fn camera_named(&self, name: Option<&str>) -> Option<&Camera> {
         match name {
             None => Some(&self.camera),

@@ -52,29 +52,30 @@ pub struct Node {
 }
 
 impl Node {
-    /// A node that draws a shape.
+    /// A node that draws a shape where the shape's own space puts it, with its parent's material.
+    /// [`Node::with_transform`] and [`Node::with_material`] say otherwise.
     pub fn shape(name: impl Into<String>, shape: Shape) -> Self {
         Self { name: name.into(), shape: Some(shape), ..Self::default() }
     }
 
-    /// A node that draws a mesh.
+    /// A node that draws a mesh. Give several nodes the same `Arc` to store and index the mesh once.
     pub fn mesh(name: impl Into<String>, mesh: impl Into<Arc<Mesh>>) -> Self {
         Self::shape(name, Shape::Mesh(mesh.into()))
     }
 
-    /// A node that draws other nodes.
+    /// A node that draws other nodes, in the space of this one. A child may have other parents as well.
     pub fn group(name: impl Into<String>, children: impl IntoIterator<Item = NodeId>) -> Self {
         Self { name: name.into(), children: children.into_iter().collect(), ..Self::default() }
     }
 
-    /// The node with this material.
+    /// The node with this material, which all below it take that name none of their own.
     #[must_use]
     pub fn with_material(mut self, material: MaterialId) -> Self {
         self.material = Some(material);
         self
     }
 
-    /// The node under this transform.
+    /// The node under this transform, from its space to its parent's, in place of an earlier one.
     #[must_use]
     pub fn with_transform(mut self, transform: Transform) -> Self {
         self.transform = transform;

@@ -84,7 +84,7 @@ impl LightTerm {
     }
 }
 
-/// c_s = (n + 2) / 2.
+/// c_s = (n + 2) / 2, by which a highlight reflects the same light in all whatever the shininess n is.
 pub fn specular_normalization(shininess: f64) -> f64 {
     0.5 * (shininess + 2.0)
 }

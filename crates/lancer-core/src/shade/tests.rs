@@ -71,6 +71,31 @@ fn specular_normalisation_is_half_of_n_plus_two() {
     assert_eq!(specular_normalization(98.0), 50.0);
 }
 
+/// The model's own property, which the report works out: 4 (n + 2^(-n/2)) / (n + 4) of the light, for light along the normal.
+#[test]
+fn a_highlight_reflects_up_to_four_times_its_coefficient() {
+    for shininess in [0.0, 1.0, 8.0, 32.0, 200.0] {
+        let material =
+            Material { diffuse: Rgb::BLACK, specular: Rgb::WHITE, shininess, ..Material::default() };
+        let lamp = Light { intensity: Rgb::WHITE, ..light(DVec3::Y) };
+        // The flux that leaves over the one that arrives, which is the intensity; rings of equal angle.
+        let rings = 2000;
+        let width = 0.5 * PI / f64::from(rings);
+        let reflected: f64 = (0..rings)
+            .map(|ring| {
+                let (sin, cos) = sin_cos((f64::from(ring) + 0.5) * width);
+                let term = LightTerm::new(&point(&material, DVec3::new(sin, cos, 0.0)), &lamp);
+                term.map_or(0.0, |term| term.specular.to_array()[0] * cos * 2.0 * PI * sin * width)
+            })
+            .sum();
+        let expected = 4.0 * (shininess + pow(0.5, 0.5 * shininess)) / (shininess + 4.0);
+        assert!(
+            (reflected - expected).abs() < 1e-5 * expected,
+            "n = {shininess}: {reflected} is not {expected}"
+        );
+    }
+}
+
 #[test]
 fn a_light_behind_the_surface_or_in_the_point_adds_nothing() {
     let material = Material { specular: Rgb::WHITE, ..Material::default() };

@@ -4,12 +4,13 @@ use super::{Chord, Hit, SurfacePoint};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
-/// The box around it.
+/// The box around it, in its own space.
 pub fn bounds() -> Bounds {
     Bounds::new(DVec3::NEG_ONE, DVec3::ONE)
 }
 
-/// The nearest hit; `primitive` is twice the axis of the face, plus 1 on its positive side.
+/// The nearest hit with t in (0, `t_max`) of a ray in the cube's space, from outside or from inside.
+/// `primitive` is twice the axis of the face, plus 1 on its positive side.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     Chord::slab(o.x, d.x, 0, 1)?
@@ -18,7 +19,7 @@ pub fn intersect(ray: &Ray) -> Option<Hit> {
         .first_hit(ray.t_max)
 }
 
-/// Whether anything is hit.
+/// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
 pub fn occluded(ray: &Ray) -> bool {
     intersect(ray).is_some()
 }

@@ -9,12 +9,13 @@ const SIDE: u32 = 0;
 const BOTTOM: u32 = 1;
 const TOP: u32 = 2;
 
-/// The box around it.
+/// The box around it, in its own space.
 pub fn bounds() -> Bounds {
     Bounds::new(DVec3::NEG_ONE, DVec3::ONE)
 }
 
-/// The nearest hit; `primitive` is 0 on the side, 1 on the bottom and 2 on the top.
+/// The nearest hit with t in (0, `t_max`) of a ray in the cylinder's space, from outside or from inside.
+/// `primitive` is 0 on the side, 1 on the bottom and 2 on the top.
 pub fn intersect(ray: &Ray, capped: bool) -> Option<Hit> {
     let side = side_chord(ray)?;
     if capped {
@@ -26,7 +27,7 @@ pub fn intersect(ray: &Ray, capped: bool) -> Option<Hit> {
         .find(|hit| hit.t > 0.0 && hit.t < ray.t_max && ray.at(hit.t).y.abs() <= 1.0)
 }
 
-/// Whether anything is hit.
+/// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
 pub fn occluded(ray: &Ray, capped: bool) -> bool {
     intersect(ray, capped).is_some()
 }

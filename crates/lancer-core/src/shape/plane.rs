@@ -9,13 +9,15 @@ pub fn bounds() -> Bounds {
     Bounds::UNBOUNDED
 }
 
-/// The nearest hit.
+/// The nearest hit with t in (0, `t_max`) of a ray in the plane's space, from either side. `primitive` is 0.
+///
+/// A ray along the plane does not meet it, even from within.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
     let t = -ray.origin.y / ray.direction.y;
     (t > 0.0 && t < ray.t_max).then_some(Hit { t, primitive: 0 })
 }
 
-/// Whether anything is hit.
+/// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
 pub fn occluded(ray: &Ray) -> bool {
     intersect(ray).is_some()
 }

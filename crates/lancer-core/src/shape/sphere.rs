@@ -6,12 +6,13 @@ use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray, portable};
 use std::f64::consts::PI;
 
-/// The box around it.
+/// The box around it, in its own space.
 pub fn bounds() -> Bounds {
     Bounds::new(DVec3::NEG_ONE, DVec3::ONE)
 }
 
-/// The nearest hit.
+/// The nearest hit with t in (0, `t_max`) of a ray in the sphere's space, from outside or from inside.
+/// `primitive` is 0.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     let (od, dd) = (o.dot(d), d.dot(d));
@@ -25,7 +26,7 @@ pub fn intersect(ray: &Ray) -> Option<Hit> {
     Chord { enter: hit(enter), exit: hit(exit) }.first_hit(ray.t_max)
 }
 
-/// Whether anything is hit.
+/// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
 pub fn occluded(ray: &Ray) -> bool {
     intersect(ray).is_some()
 }

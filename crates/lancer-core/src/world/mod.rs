@@ -195,7 +195,7 @@ impl World {
         self.bounds
     }
 
-    /// What it holds.
+    /// What it holds, counted anew at each call, in time linear in its objects.
     pub fn statistics(&self) -> WorldStatistics {
         let sizes = || self.meshes.iter().map(|mesh| mesh.index.size()).chain([self.index.size()]);
         let triangles = |mesh: &Arc<PreparedMesh>| mesh.mesh.triangle_count() as u64;

@@ -5,7 +5,7 @@ use super::shelf::Showing;
 use super::{Action, App, Asking, Selection};
 use crate::Source;
 use crate::commands::Command;
-use crate::document::{Document, Edit};
+use crate::document::{Document, Edit, EditKind};
 use crate::language::{Language, Phrase};
 use crate::navigation::{Axis, Scheme};
 use crate::panels::file_picker::Purpose;
@@ -184,14 +184,14 @@ impl App {
     fn undo(&mut self) {
         let language = self.language();
         if let Some(kind) = self.document.as_mut().and_then(Document::undo) {
-            self.messages.info(format!("{} {}", language.say(UNDONE), language.say(kind.name())));
+            self.messages.info(did(UNDONE, kind, language));
         }
     }
 
     fn redo(&mut self) {
         let language = self.language();
         if let Some(kind) = self.document.as_mut().and_then(Document::redo) {
-            self.messages.info(format!("{} {}", language.say(REDONE), language.say(kind.name())));
+            self.messages.info(did(REDONE, kind, language));
         }
     }
 
@@ -412,4 +412,9 @@ fn descendants(scene: &Scene, node: NodeId) -> Vec<bool> {
         }
     }
     below
+}
+
+/// "Undone: render settings".
+fn did(done: Phrase, kind: EditKind, language: Language) -> String {
+    format!("{} {}", language.say(done), language.say(kind.name()).to_lowercase())
 }

@@ -24,6 +24,19 @@ impl Kept {
         &self.texture
     }
 
+    /// Its size, its settings and the time that it took.
+    pub(crate) fn summary(&self) -> String {
+        let settings = &self.rendered.request.settings;
+        let image = &self.rendered.image;
+        let samples = settings.samples;
+        let seconds = self.rendered.elapsed.as_secs_f64();
+        let mut text = format!("{} × {}, {samples} × {samples}, ", image.width(), image.height());
+        if settings.ao.samples > 0 {
+            text.push_str(&format!("AO {}, ", settings.ao.samples));
+        }
+        text + &format!("{seconds:.2} s")
+    }
+
     /// The image as it is shown and saved, still linear.
     pub(crate) fn shown_image(&self) -> Image {
         self.tone.expose(&self.rendered.image)

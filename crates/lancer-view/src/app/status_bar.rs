@@ -17,7 +17,7 @@ const READY: Phrase = Phrase::new("Final picture", "Image finale");
 const MOVING: Phrase = Phrase::new("Preview", "Aperçu");
 const CANCEL: Phrase = Phrase::new("Cancel", "Annuler");
 const LEFT: Phrase = Phrase::new("left", "restant");
-const NOTHING: Phrase = Phrase::new("background", "fond");
+const NOTHING: Phrase = Phrase::new("background", "arrière-plan");
 const UNNAMED: Phrase = Phrase::new("(unnamed)", "(sans nom)");
 const DISTANCE: Phrase = Phrase::new("distance", "distance");
 const DEPTH: Phrase = Phrase::new("depth", "profondeur");
@@ -66,6 +66,8 @@ impl App {
             ui.colored_label(color, fault);
         } else if self.shelf.showing == Showing::Live {
             self.live_activity(ui);
+        } else if let Some(kept) = self.shelf.shown() {
+            ui.label(format!("{}   {}", kept.title, kept.summary()));
         }
         if self.saver.is_busy() {
             ui.spinner();

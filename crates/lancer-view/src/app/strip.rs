@@ -53,7 +53,7 @@ impl App {
         };
         let response =
             entry(ui, &kept.title, size_of(kept), is_shown, |ui, rect| kept.texture().paint(ui, rect));
-        let response = response.on_hover_text(details(kept));
+        let response = response.on_hover_text(kept.summary());
         if response.clicked() {
             self.shelf.showing = if ui.input(|input| input.modifiers.shift) {
                 self.compare_with(index)
@@ -148,16 +148,4 @@ fn paint_running(ui: &Ui, rect: Rect, running: &Running) {
 
 fn size_of(kept: &Kept) -> (u32, u32) {
     (kept.rendered.image.width(), kept.rendered.image.height())
-}
-
-fn details(kept: &Kept) -> String {
-    let settings = &kept.rendered.request.settings;
-    let seconds = kept.rendered.elapsed.as_secs_f64();
-    let (width, height) = size_of(kept);
-    let samples = settings.samples;
-    let mut text = format!("{width} × {height}, {samples} × {samples}, {seconds:.2} s");
-    if settings.ao.samples > 0 {
-        text.push_str(&format!(", AO {}", settings.ao.samples));
-    }
-    text
 }

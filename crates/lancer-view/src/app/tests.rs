@@ -26,9 +26,16 @@ type Window = Harness<'static, Stage>;
 const SIZE: Vec2 = vec2(1000.0, 640.0);
 
 fn window_of(source: Source, language: Language) -> Window {
+    let mut window = window_before(source, language);
+    wait(&mut window, "the scene is shown", |app| app.document.is_some() && app.live.frame().is_some());
+    window
+}
+
+/// The window when it has just been asked to show something.
+fn window_before(source: Source, language: Language) -> Window {
     let directory = tempfile::tempdir().unwrap();
     let stage = Stage { source, language, directory, app: None };
-    let mut window = Harness::builder().with_size(SIZE).with_max_steps(64).build_ui_state(
+    Harness::builder().with_size(SIZE).with_max_steps(64).build_ui_state(
         |ui, stage: &mut Stage| {
             let Stage { source, language, directory, app } = stage;
             let app = app.get_or_insert_with(|| {
@@ -40,9 +47,7 @@ fn window_of(source: Source, language: Language) -> Window {
             app.frame(ui);
         },
         stage,
-    );
-    wait(&mut window, "the scene is shown", |app| app.document.is_some() && app.live.frame().is_some());
-    window
+    )
 }
 
 fn window(name: &str) -> Window {
@@ -269,6 +274,21 @@ fn a_broken_file_is_told_with_its_line_and_the_picture_stays() {
     assert!(window.query_all_by_label_contains("sphrere").count() > 0);
     assert!(app(&window).live.frame().is_some());
     assert_eq!(app(&window).document.as_ref().unwrap().source().title(), "whitted");
+}
+
+#[test]
+fn a_window_without_a_scene_invites_to_open_one_in_both_languages() {
+    for (language, open) in
+        [(Language::English, "or open a file…"), (Language::French, "ou ouvrez un fichier…")]
+    {
+        let missing = Source::File("is-not-there.ply".into());
+        let mut window = window_before(missing, language);
+        wait(&mut window, "the fault is told", |app| app.faults.is_some());
+        window.run_steps(2);
+        window.get_by_label(open).click();
+        window.run_steps(2);
+        assert!(app(&window).picker.is_some());
+    }
 }
 
 #[test]

@@ -3,12 +3,13 @@
 use super::live::OverlayKey;
 use super::shelf::Showing;
 use super::{Action, App, Selection};
+use crate::commands::Command;
 use crate::language::Phrase;
 use crate::navigation::{Button, Gesture, Modifiers};
 use crate::picture::{Readout, Taken};
 use eframe::egui::{
-    self, Align2, Color32, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
-    Ui, Vec2, WidgetInfo, pos2, vec2,
+    self, Align2, Color32, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Response, RichText, Role,
+    Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use lancer_core::geometry::DVec2;
 use lancer_core::render::{Feature, feature_at};
@@ -16,6 +17,8 @@ use lancer_core::render::{Feature, feature_at};
 const LIVE: Phrase = Phrase::new("Live picture", "Image en direct");
 const RENDERED: Phrase = Phrase::new("Rendered picture", "Image rendue");
 const SPLIT: Phrase = Phrase::new("Split between the two pictures", "Limite entre les deux images");
+const INVITATION: Phrase = Phrase::new("Drop a scene or a model here", "Déposez ici une scène ou un modèle");
+const OR_OPEN: Phrase = Phrase::new("or open a file…", "ou ouvrez un fichier…");
 const DROP: Phrase = Phrase::new("Drop to open", "Déposer pour ouvrir");
 
 /// What is around a picture, without a hue of its own: beside white, a picture would look dark.
@@ -51,8 +54,28 @@ impl App {
         }
     }
 
+    /// What can be done where there is nothing to show: after the reading of the first file failed or was cancelled.
+    fn invitation(&self, ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
+        if self.opening.is_some() {
+            return;
+        }
+        let language = self.language();
+        let middle = Rect::from_center_size(rect.center(), vec2(rect.width(), 64.0));
+        ui.scope_builder(UiBuilder::new().max_rect(middle), |ui| {
+            ui.vertical_centered(|ui| {
+                ui.label(RichText::new(language.say(INVITATION)).size(18.0));
+                if ui.button(language.say(OR_OPEN)).clicked() {
+                    actions.push(Action::Command(Command::Open));
+                }
+            });
+        });
+    }
+
     fn live_viewport(&mut self, ui: &mut Ui, rect: Rect, actions: &mut Vec<Action>) {
-        let Some(document) = &self.document else { return };
+        let Some(document) = &self.document else {
+            self.invitation(ui, rect, actions);
+            return;
+        };
         let settings = document.scene().settings;
         let aspect = f64::from(settings.width) / f64::from(settings.height);
         let (picture, size) = fit(rect, aspect, ui.ctx().pixels_per_point());
@@ -416,7 +439,7 @@ fn modifiers(ui: &Ui) -> Modifiers {
 }
 
 fn clipped(ui: &mut Ui, part: Rect) -> Ui {
-    let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(part));
+    let mut inner = ui.new_child(UiBuilder::new().max_rect(part));
     inner.set_clip_rect(part.intersect(ui.clip_rect()));
     inner
 }

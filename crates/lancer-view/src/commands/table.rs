@@ -72,10 +72,10 @@ commands! {
             ("Show a scene file or a model", "Afficher un fichier de scène ou un modèle");
         Reload Act File [ctrl(Key::R), key(Key::F5)]
             ("Reload", "Recharger")
-            ("Read the scene's file again", "Relire le fichier de la scène");
+            ("Read the scene’s file again", "Relire le fichier de la scène");
         SaveScene Act Document [ctrl(Key::S)]
             ("Save view into scene file", "Enregistrer la vue dans la scène")
-            ("Write the camera and what was changed into the scene's file, and keep the rest of it",
+            ("Write the camera and what was changed into the scene’s file, and keep the rest of it",
              "Écrire la caméra et ce qui a été modifié dans le fichier de la scène, en gardant le reste");
         SaveSceneAs Act Document [ctrl_shift(Key::S)]
             ("Save scene as…", "Enregistrer la scène sous…")
@@ -111,8 +111,8 @@ commands! {
             ("Show all", "Tout afficher")
             ("Bring back everything that is hidden", "Faire réapparaître tout ce qui est masqué");
         UseViewAsCamera Act Document []
-            ("Use this view as the scene's camera", "Prendre cette vue comme caméra de la scène")
-            ("Make the scene's camera look as the view does now",
+            ("Use this view as the scene’s camera", "Prendre cette vue comme caméra de la scène")
+            ("Make the scene’s camera look as the view does now",
              "Donner à la caméra de la scène le point de vue actuel");
     }
     View {
@@ -125,8 +125,8 @@ commands! {
             ("Move the view so that what is selected fills it",
              "Déplacer la vue pour que la sélection la remplisse");
         Home Act Document [key(Key::Home)]
-            ("Scene's camera", "Caméra de la scène")
-            ("Go back to where the scene's camera stands", "Revenir à la caméra de la scène");
+            ("Scene’s camera", "Caméra de la scène")
+            ("Go back to where the scene’s camera stands", "Revenir à la caméra de la scène");
         Front Act Document [key(Key::Num1)]
             ("Front", "Face")
             ("Look along the Z axis, from the front", "Regarder le long de l’axe Z, de face");

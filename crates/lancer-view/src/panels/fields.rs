@@ -144,7 +144,7 @@ impl Rows<'_> {
     ) {
         const RESET: Phrase = Phrase::new("Reset", "Rétablir :");
         const TO_WHAT: Phrase =
-            Phrase::new("Back to the scene's own value", "Revenir à la valeur de la scène");
+            Phrase::new("Back to the scene’s own value", "Revenir à la valeur de la scène");
         let (name, meaning) = (self.language.say(parameter.name), self.language.say(parameter.meaning));
         let height = self.ui.spacing().interact_size.y;
         self.ui.horizontal(|ui| {

@@ -104,6 +104,7 @@ struct Task {
 
 impl Task {
     fn work(self) {
+        pool::step_back();
         let opened = guarded(|| self.open()).unwrap_or_else(|bug| Err(fault(&self.source, bug)));
         let Self { opener, source, cancel, compile, .. } = self;
         // Under the lock, so that nothing comes from a scene after it was cancelled.

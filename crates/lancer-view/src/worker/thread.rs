@@ -5,7 +5,7 @@ use super::film::Count;
 use super::guard::guarded;
 use super::open::Opener;
 use super::outbox::Outbox;
-use super::pool::KeptPool;
+use super::pool::{self, KeptPool};
 use super::view::{Showing, View};
 use super::worlds::Worlds;
 use super::{Event, Frame, Progress, RenderFault, RenderId, RenderRequest, Rendered, ViewRequest, channel};
@@ -37,6 +37,7 @@ impl RenderThread {
 
     /// Works until the desk is closed.
     pub(super) fn work(&mut self) {
+        pool::step_back();
         let desk = Arc::clone(&self.desk);
         while let Some(job) = desk.next() {
             if let Some(opened) = self.opener.take_opened() {

@@ -37,3 +37,22 @@ fn a_long_render_is_cancelled_and_the_view_is_back() {
         Ok(())
     });
 }
+
+#[test]
+fn a_copied_picture_is_pasted_as_the_pixels_that_lancer_render_makes() {
+    sit("copy", &["balls.yaml"], &[("balls.yaml", BALLS)], |sitting| {
+        sitting.wait_for_title("balls.yaml - Lancer")?;
+        let live = sitting.see("live")?;
+        assert_eq!(sitting.clipboard("image/png")?, None);
+        sitting.keys(&["F12"])?;
+        sitting.wait_for_change(&live)?;
+        sitting.see("rendered")?;
+        sitting.command("Copy picture")?;
+        sitting.see("copied")?;
+        let pasted = sitting.clipboard("image/png")?.expect("a picture is on the clipboard");
+        sitting.lancer("render balls.yaml -o rendered.png");
+        let pixels = |png: &[u8]| image::load_from_memory(png).map(|image| image.to_rgb8());
+        assert!(pixels(&pasted)? == pixels(&fs::read(sitting.path("rendered.png"))?)?);
+        Ok(())
+    });
+}

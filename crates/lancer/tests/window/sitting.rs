@@ -189,6 +189,11 @@ impl Sitting<'_> {
     }
 
     /// Drags a file of the directory over the window, as from a file manager.
+    /// What was copied, in a form such as `image/png`.
+    pub(crate) fn clipboard(&self, form: &str) -> Result<Option<Vec<u8>>, Failure> {
+        self.display.clipboard(form)
+    }
+
     pub(crate) fn drag_file(&self, name: &str) -> Result<FileDrag, Failure> {
         FileDrag::over(self.display, &self.program, &[&self.path(name)], (600, 400))
     }

@@ -16,6 +16,7 @@ mod tests;
 mod traverse;
 mod validate;
 
+pub use split::{STEP_COST, TEST_COST};
 pub use validate::{Defect, NodeKind, NodeVisit};
 
 use super::{Aabb, Primitives};
@@ -86,7 +87,7 @@ impl KdTree {
         build::build(primitives, settings, cancel)
     }
 
-    /// The box around all primitives.
+    /// The box around all primitives, rounded outward to `f32`; a point at the origin where there are none.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -106,7 +107,7 @@ impl KdTree {
         self.references.len()
     }
 
-    /// Bytes held.
+    /// Bytes held by nodes and references, without the primitives themselves.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.references[..])
     }

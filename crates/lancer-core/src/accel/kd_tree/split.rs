@@ -21,10 +21,10 @@ pub(super) struct Split {
 }
 
 /// Cost of a step from a node to its child. The unit of cost.
-const STEP_COST: f32 = 1.0;
+pub const STEP_COST: f32 = 1.0;
 /// Cost of a test against a primitive. Less gives smaller trees with longer leaves, more gives deeper trees
 /// with more duplicates.
-const TEST_COST: f32 = 1.5;
+pub const TEST_COST: f32 = 1.5;
 /// What a split is worth that cuts off empty space: a ray through the empty side is done at once.
 const EMPTY_FACTOR: f32 = 0.8;
 

@@ -62,7 +62,19 @@ impl KdTree {
     /// `f64::NEG_INFINITY` to end. Leaves that begin exactly there are still visited. A primitive that spans
     /// several leaves may come several times; some that the ray misses may come too.
     #[inline]
-    pub fn visit_leaves(&self, ray: &Ray, mut visit: impl FnMut(&[u32]) -> f64) {
+    pub fn visit_leaves(&self, ray: &Ray, visit: impl FnMut(&[u32]) -> f64) {
+        self.visit_steps_and_leaves(ray, || (), visit);
+    }
+
+    /// As [`KdTree::visit_leaves`], and calls `step` for each inner node on the way. Steps and primitives in leaves are what
+    /// the surface area heuristic weighs against each other, so that whoever counts them sees whether it is right.
+    #[inline]
+    pub fn visit_steps_and_leaves(
+        &self,
+        ray: &Ray,
+        mut step: impl FnMut(),
+        mut visit: impl FnMut(&[u32]) -> f64,
+    ) {
         let crossing = Crossing::new(ray, self);
         let Some((mut enter, mut exit)) = crossing.clip(self, ray.t_max) else { return };
         let mut t_max = ray.t_max;
@@ -72,6 +84,7 @@ impl KdTree {
         loop {
             match self.nodes[node as usize].kind() {
                 Kind::Inner { axis, position, above } => {
+                    step();
                     let t = (f64::from(position) - crossing.origin[axis]) * crossing.inverse[axis];
                     let (earliest, latest) = (t - crossing.slack[axis], t + crossing.slack[axis]);
                     let rising = crossing.inverse[axis] > 0.0;

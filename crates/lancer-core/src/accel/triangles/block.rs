@@ -116,7 +116,7 @@ impl Block {
 
         // With S = |from_a|, E = the longer edge, both by their largest component, and e the error of the origin,
         // the errors are below 64 u S E + 8 e E of u and v, 64 u E^2 of the determinant, and E times the former of
-        // the numerator. Derived in docs/kernels.md.
+        // the numerator. Derived in docs/how-it-works/kernels.md.
         let edge = largest(e1).max(largest(e2));
         let reach = largest(from_a);
         let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + ray.origin_error * 8.0) + UNDERFLOW;

@@ -96,8 +96,8 @@ impl NarrowRay {
         let narrow = narrowed(origin);
         let rest = narrowed(origin - widened(narrow));
         let inverse = narrowed(safe_inverse(direction));
-        // A slab test computes b * inverse + offset. The sum of its errors, derived in docs/kernels.md, is
-        // below 12 units of roundoff of |b| + |origin|, each at most `size`.
+        // A slab test computes b * inverse + offset. The sum of its errors is below 12 units of roundoff of
+        // |b| + |origin|, each at most `size`. Derived in docs/how-it-works/kernels.md.
         let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
         let direction = narrowed(direction);
         let ray = Self::from_narrow(narrow, rest, direction, inverse, margin, slack as f32, end as f32);

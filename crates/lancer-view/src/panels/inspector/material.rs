@@ -137,7 +137,7 @@ const SPECULAR: Parameter = parameter(
 const METALLIC: Parameter = parameter(
     ("m metallic", "m métallique"),
     (
-        "m: how far highlights take the surface's colour, m S + (1 - m). 0 is plastic, 1 is metal.",
+        "m: how far highlights take the surface’s colour, m S + (1 - m). 0 is plastic, 1 is metal.",
         "m : à quel point les reflets prennent la couleur de la surface, m S + (1 - m). 0 : plastique, 1 : métal.",
     ),
 );

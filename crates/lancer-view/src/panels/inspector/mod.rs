@@ -85,8 +85,11 @@ fn title(selection: Selection, scene: &Scene, language: Language) -> String {
         Selection::Light(_) => Phrase::new("Light", "Lumière"),
         Selection::Material(_) => Phrase::new("Material", "Matériau"),
     };
-    let separator = language.say(Phrase::new(": ", " : "));
-    format!("{}{separator}{}", language.say(kind), scene_tree::name_of(selection, scene, language))
+    let (kind, name) = (language.say(kind), scene_tree::name_of(selection, scene, language));
+    if name.is_empty() {
+        return kind.to_owned();
+    }
+    format!("{kind}{}{name}", language.say(Phrase::new(": ", " : ")))
 }
 
 fn heading(ui: &mut Ui, text: &str) {
@@ -111,33 +114,9 @@ enum Wish {
 
 impl View<'_> {
     fn scene(&mut self, ui: &mut Ui) {
-        const AMBIENT: Parameter = Parameter {
-            name: Phrase::new("L_a ambient", "L_a ambiante"),
-            meaning: Phrase::new(
-                "L_a: the ambient light of the whole scene. Each surface adds c_a L_a k_a S.",
-                "L_a : la lumière ambiante de toute la scène. Chaque surface ajoute c_a L_a k_a S.",
-            ),
-        };
-        const BACKGROUND: Parameter = Parameter {
-            name: Phrase::new("Background", "Arrière-plan"),
-            meaning: Phrase::new(
-                "What is seen where a ray meets nothing, also in mirrors and through glass.",
-                "Ce qui est vu là où un rayon ne rencontre rien, aussi dans les miroirs et à travers le verre.",
-            ),
-        };
-        let (scene, saved) = (self.document.scene(), self.document.saved());
-        let (mut ambient, mut background) = (scene.ambient, scene.background);
-        let mut rows = Rows { ui, language: self.language };
-        rows.color(&AMBIENT, &mut ambient, saved.ambient);
-        rows.color(&BACKGROUND, &mut background, saved.background);
-        if ambient != scene.ambient {
-            self.edit(Edit::Ambient(ambient));
-        }
-        if background != scene.background {
-            self.edit(Edit::Background(background));
-        }
         let add = Phrase::new("Add a light", "Ajouter une lumière");
         if ui.button(self.language.say(add)).clicked() {
+            let scene = self.document.scene();
             let mut lights = scene.lights.clone();
             lights.push(light::new_for(scene));
             let index = lights.len() - 1;

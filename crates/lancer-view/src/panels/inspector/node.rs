@@ -89,7 +89,7 @@ fn transform(
 
 /// The twelve numbers of a transform that is more than a pose.
 fn matrix(ui: &mut Ui, language: Language, transform: &Transform) -> Option<Transform> {
-    let phrase = Phrase::new("Matrix, into the parent's space", "Matrice, vers l’espace du parent");
+    let phrase = Phrase::new("Matrix, into the parent’s space", "Matrice, vers l’espace du parent");
     ui.label(language.say(phrase));
     let (mut linear, mut translation) = (transform.linear(), transform.translation());
     for row in 0..3 {
@@ -176,7 +176,7 @@ const VISIBLE: Parameter = Parameter {
 const TRANSLATION: Parameter = Parameter {
     name: Phrase::same("Translation"),
     meaning: Phrase::new(
-        "How far it is moved in its parent's space, after it was scaled and turned",
+        "How far it is moved in its parent’s space, after it was scaled and turned",
         "De combien il est déplacé dans l’espace de son parent, une fois mis à l’échelle et tourné",
     ),
 };

@@ -134,9 +134,9 @@ mod tests {
         #[test]
         fn a_pose_of_any_turns_and_factors_makes_the_same_transform(
             degrees in prop::array::uniform3(-360.0..360.0_f64),
-            scale in prop::array::uniform3((-6.0..3.0_f64, any::<bool>())),
+            scale in prop::array::uniform3((1.0..1e3_f64, prop::sample::select(vec![1e-6, 1e-3, 1.0, -1e-3, -1.0]))),
         ) {
-            let scale = scale.map(|(tens, mirrored)| 10.0_f64.powf(tens) * if mirrored { -1.0 } else { 1.0 });
+            let scale = scale.map(|(digits, unit)| digits * unit);
             let pose = Pose {
                 translation: DVec3::new(1.0, 2.0, 3.0),
                 degrees: degrees.into(),

@@ -357,20 +357,6 @@ fn lights_are_added_and_removed_in_both_languages() {
 }
 
 #[test]
-fn the_light_and_the_background_of_the_scene_are_set_in_both_languages() {
-    for (language, ambient, background) in [
-        (Language::English, "L_a ambient, green", "Background, blue"),
-        (Language::French, "L_a ambiante, vert", "Arrière-plan, bleu"),
-    ] {
-        let mut window = window(|_| Selection::None, language);
-        type_number(&mut window, ambient, "0.5");
-        type_number(&mut window, background, "2");
-        assert_eq!(scene_of(&window).ambient, Rgb::new(0.0, 0.5, 0.0));
-        assert_eq!(scene_of(&window).background, Rgb::new(0.0, 0.0, 2.0));
-    }
-}
-
-#[test]
 fn a_selection_that_is_no_longer_there_shows_nothing_to_edit() {
     for selection in [Selection::Light(9), Selection::Material(scene_with_many_materials())] {
         let window = window(move |_| selection, Language::English);

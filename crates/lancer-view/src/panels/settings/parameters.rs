@@ -20,7 +20,7 @@ pub(super) const SCENE: Parameter = parameter(
 
 pub(super) const CAMERA: Parameter = parameter(
     ("Camera", "Caméra"),
-    ("Look through one of the scene's cameras", "Regarder par l’une des caméras de la scène"),
+    ("Look through one of the scene’s cameras", "Regarder par l’une des caméras de la scène"),
 );
 
 pub(super) const WIDTH: Parameter = parameter(
@@ -76,7 +76,7 @@ pub(super) const REFLECTIONS: Parameter = parameter(
 pub(super) const REFRACTIONS: Parameter = parameter(
     ("Refractions", "Réfractions"),
     (
-        "The term k_t L_t: L_t is the light that comes through the surface, bent by Snell's law.",
+        "The term k_t L_t: L_t is the light that comes through the surface, bent by Snell’s law.",
         "Le terme k_t L_t : L_t est la lumière qui traverse la surface, déviée selon la loi de Snell-Descartes.",
     ),
 );
@@ -90,7 +90,7 @@ pub(super) const AMBIENT: Parameter = parameter(
 );
 
 pub(super) const BACKGROUND: Parameter = parameter(
-    ("Background", "Fond"),
+    ("Background", "Arrière-plan"),
     (
         "The light of a ray that meets nothing; it is seen in mirrors and glass too.",
         "La lumière d’un rayon qui ne rencontre rien ; elle se voit aussi dans les miroirs et le verre.",

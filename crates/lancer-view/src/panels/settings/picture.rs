@@ -61,7 +61,7 @@ const SIZES: [(u32, u32, &str); 7] = [
 /// Width and height.
 pub(super) fn size(rows: &mut Rows, linked: &mut LinkedSides, settings: &mut Settings, own: &Settings) {
     const SIZE: Phrase = Phrase::new("Usual sizes", "Tailles usuelles");
-    const OWN: Phrase = Phrase::new("The scene's own", "Celle de la scène");
+    const OWN: Phrase = Phrase::new("The scene’s own", "Celle de la scène");
     const LINK: Phrase = Phrase::new("Keep the ratio", "Garder le rapport");
     let before = *settings;
     let longest =

@@ -162,7 +162,7 @@ fn occlusion_that_is_turned_off_and_on_has_its_samples_again() {
 fn light_background_and_exposure_are_set() {
     let mut window = window(Language::French);
     set_number(&mut window, "Ambiante, vert", "1,5");
-    set_number(&mut window, "Fond, bleu", "0,25");
+    set_number(&mut window, "Arrière-plan, bleu", "0,25");
     set_number(&mut window, "Exposition", "-1");
     let scene = window.state().document.scene();
     assert_eq!((scene.ambient.g, scene.background.b, scene.tone.exposure), (1.5, 0.25, -1.0));
