@@ -3,7 +3,7 @@
 
 use lancer_core::render::{Control, render};
 use lancer_core::world::{CompileOptions, World};
-use lancer_io::image::encode::{self, ImageFormat, Metadata};
+use lancer_io::image::{ImageFormat, Metadata, encode};
 use lancer_io::output::write_atomically;
 use lancer_io::{LoadOptions, Loaded, load};
 use std::error::Error;
@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let picture = render(&world, &scene.camera, &scene.settings, None, &Control::default())?;
 
     let format = ImageFormat::from_path(&picture_path)?;
-    let image = scene.tone.expose(&picture.image);
-    write_atomically(&picture_path, |out| encode::write(format, &image, &Metadata::default(), out))?;
+    let (image, tone, metadata) = (&picture.image, scene.tone, Metadata::default());
+    write_atomically(&picture_path, |out| encode::write(format, image, tone, &metadata, out))?;
 
     for warning in warnings {
         writeln!(std::io::stderr(), "warning: {warning}")?;

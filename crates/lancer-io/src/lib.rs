@@ -8,7 +8,7 @@
 //! ```
 //! use lancer_core::render::{Control, render};
 //! use lancer_core::world::{CompileOptions, World};
-//! use lancer_io::image::encode::{self, ImageFormat, Metadata};
+//! use lancer_io::image::{ImageFormat, Metadata, encode};
 //! use lancer_io::output::write_atomically;
 //! use lancer_io::{LoadOptions, load};
 //!
@@ -26,8 +26,8 @@
 //! let picture = render(&world, &scene.camera, &scene.settings, None, &Control::default())?;
 //!
 //! let format = ImageFormat::from_path(&picture_path)?;
-//! let image = scene.tone.expose(&picture.image);
-//! write_atomically(&picture_path, |out| encode::write(format, &image, &Metadata::default(), out))?;
+//! let (image, tone, metadata) = (&picture.image, scene.tone, Metadata::default());
+//! write_atomically(&picture_path, |out| encode::write(format, image, tone, &metadata, out))?;
 //! assert!(picture_path.is_file());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,6 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod compare;
 pub mod diagnostics;
 pub mod image;
 pub mod limits;
@@ -55,6 +56,7 @@ mod load;
 pub mod model;
 pub mod output;
 mod package;
+pub mod provenance;
 pub mod resolver;
 pub mod scene_file;
 pub mod showcase;

@@ -21,6 +21,7 @@ impl scene_file::Assets for NoAssets {
         &mut self,
         _: &mut lancer_core::scene::Scene,
         path: &Path,
+        _: &lancer_io::model::ModelOptions,
     ) -> Result<scene_file::Model, lancer_io::diagnostics::LoadError> {
         unreachable!("{} was never resolved", path.display())
     }

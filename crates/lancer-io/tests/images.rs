@@ -2,10 +2,10 @@
 
 use exr::prelude::read_first_rgba_layer_from_file;
 use lancer_core::Rgb;
-use lancer_core::film::{Image, to_srgb8};
+use lancer_core::film::{Image, Tone, to_srgb8};
 use lancer_core::geometry::DVec2;
-use lancer_io::image::encode::{ImageFormat, Metadata, write, write_exr, write_png};
-use lancer_io::image::load_texture;
+use lancer_io::image::encode::{write, write_png};
+use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, load_texture};
 use lancer_io::limits::Limits;
 use lancer_io::output::write_atomically;
 use lancer_io::resolver::Resolver;
@@ -92,11 +92,34 @@ fn tga_is_known_by_its_name_and_others_by_their_content() {
 }
 
 #[test]
+fn webp_and_tiff_are_textures_and_floats_are_none() {
+    let directory = TempDir::new().unwrap();
+    let image = Image::black(3, 2).map(|_| [1.0, 0.0, 0.0]);
+    let written = |encoding: Encoding| {
+        let mut bytes = Vec::new();
+        write(encoding, &image, Tone::default(), &Metadata::default(), &mut bytes).unwrap();
+        bytes
+    };
+    let tiff = |bits| {
+        let choice = EncodingChoice { bits: Some(bits), ..EncodingChoice::default() };
+        written(Encoding::new(ImageFormat::Tiff, choice).unwrap())
+    };
+    for bytes in [written(ImageFormat::WebP.into()), tiff(8), tiff(16)] {
+        assert_eq!(load(directory.path(), "t", &bytes), Ok((3, 2, Rgb::new(1.0, 0.0, 0.0))));
+    }
+    let error = load(directory.path(), "t.tif", &tiff(32)).unwrap_err();
+    assert!(error.contains("t.tif: ") && error.contains("8 or 16 bits"), "{error}");
+    for radiance in [ImageFormat::Hdr, ImageFormat::Exr, ImageFormat::Pfm] {
+        assert!(load(directory.path(), "t", &written(radiance.into())).is_err(), "{radiance:?}");
+    }
+}
+
+#[test]
 fn errors_of_textures_name_the_file() {
     let directory = TempDir::new().unwrap();
     let whole = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, None, &[255]);
     for (bytes, reason) in [
-        (&b"GIF89a"[..], "PNG, JPEG, BMP, TGA"),
+        (&b"GIF89a"[..], "PNG, JPEG, WebP, TIFF, BMP, TGA"),
         (b"", "not an image"),
         (b"plain text", "not an image"),
         (&whole[..40], "broken"),
@@ -177,7 +200,10 @@ fn exr_holds_every_float_exactly() {
     image.put(3, 4, 1, &[[1e30, -7.25, f32::MIN_POSITIVE]]);
     let directory = TempDir::new().unwrap();
     let path = directory.path().join("image.exr");
-    write_atomically(&path, |out| write(ImageFormat::Exr, &image, &Metadata::default(), out)).unwrap();
+    write_atomically(&path, |out| {
+        write(ImageFormat::Exr, &image, Tone::default(), &Metadata::default(), out)
+    })
+    .unwrap();
     let read = read_first_rgba_layer_from_file(
         &path,
         |size, _| Image::black(size.x() as u32, size.y() as u32),
@@ -192,10 +218,10 @@ fn exr_holds_every_float_exactly() {
 #[test]
 fn the_same_image_gives_the_same_bytes() {
     let image = gradient(64, 64);
-    for format in [ImageFormat::Png, ImageFormat::Exr] {
+    for format in ImageFormat::ALL {
         let bytes = || {
             let mut bytes = Vec::new();
-            write(format, &image, &Metadata::default(), &mut bytes).unwrap();
+            write(format, &image, Tone::default(), &Metadata::default(), &mut bytes).unwrap();
             bytes
         };
         assert_eq!(bytes(), bytes());
@@ -206,16 +232,28 @@ fn the_same_image_gives_the_same_bytes() {
 fn an_image_without_pixels_is_an_error() {
     let image = Image::black(0, 7);
     assert!(write_png(&image, &Metadata::default(), io::sink()).is_err());
-    assert!(write_exr(&image, &Metadata::default(), io::sink()).is_err());
+    for format in ImageFormat::ALL {
+        assert!(write(format, &image, Tone::default(), &Metadata::default(), io::sink()).is_err());
+    }
 }
 
 #[test]
 fn formats_are_chosen_by_extension_in_any_case() {
     assert_eq!(ImageFormat::from_path(Path::new("a/b.PNG")), Ok(ImageFormat::Png));
     assert_eq!(ImageFormat::from_path(Path::new("b.exr")), Ok(ImageFormat::Exr));
-    for other in ["b.jpg", "png", "b"] {
+    assert_eq!(ImageFormat::from_path(Path::new("b.Jpg")), Ok(ImageFormat::Jpeg));
+    assert_eq!(ImageFormat::from_path(Path::new("b.tif")), Ok(ImageFormat::Tiff));
+    for format in ImageFormat::ALL {
+        assert_eq!(ImageFormat::from_name(format.name()), Some(format));
+        assert!(ImageFormat::EXTENSIONS.contains(&format.name()));
+    }
+    assert!(ImageFormat::EXTENSIONS.iter().all(|extension| ImageFormat::from_name(extension).is_some()));
+    for other in ["b.gif", "png", "b"] {
         let error = ImageFormat::from_path(Path::new(other)).unwrap_err().to_string();
-        assert!(error.contains(".png or .exr") && error.contains(other), "{error}");
+        assert!(
+            error.contains(".png, .jpg") && error.contains("or .exr") && error.contains(other),
+            "{error}"
+        );
     }
 }
 

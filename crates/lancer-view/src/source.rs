@@ -2,6 +2,7 @@
 
 use lancer_gallery::BuiltinScene;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::provenance::SceneSource;
 use lancer_io::{LoadOptions, Loaded};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,14 @@ impl Source {
             Self::File(path) => path
                 .file_stem()
                 .map_or_else(|| "picture".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+        }
+    }
+
+    /// What a picture says of where its scene comes from: of a file, the name alone.
+    pub fn record(&self) -> SceneSource {
+        match self {
+            Self::Builtin(_) => SceneSource::Builtin(self.title()),
+            Self::File(_) => SceneSource::File(self.title()),
         }
     }
 

@@ -4,12 +4,14 @@
 //! no file was looked at. What they mean together is for [`crate::job`] to say.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args as ClapArgs, Parser, Subcommand};
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use lancer_core::accel::{Accelerator, KdTree};
-use lancer_core::film::Tone;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::render::Region;
 use lancer_core::scene::Settings;
 use lancer_core::simd::InstructionSet;
+use lancer_io::compare::PIXELS_PER_DEGREE;
+use lancer_io::image::{Compression, ImageFormat};
 use lancer_io::scene_file::Override;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -18,8 +20,9 @@ use std::path::PathBuf;
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
+    1  verify: the picture is another; compare: beyond the threshold
     2  the command line is wrong
-    3  the scene or a model is at fault
+    3  the scene, a model or an image is at fault
     4  the output could not be written
     5  the render failed
   130  interrupted";
@@ -52,6 +55,10 @@ pub(crate) enum Command {
     Completions(CompletionsArgs),
     /// Print the manual page
     Man,
+    /// Render a picture again and tell whether its bytes agree
+    Verify(Box<VerifyArgs>),
+    /// Tell how far two pictures are apart
+    Compare(CompareArgs),
 }
 
 /// `lancer render`.
@@ -65,10 +72,11 @@ pub(crate) struct RenderArgs {
     /// given a default material.
     pub(crate) scene: Option<OsString>,
 
-    /// Where the picture goes: a .png or .exr file, or `-` for a PNG on standard output
+    /// Where the picture goes: a file, or `-` for standard output
     ///
-    /// Without it, SCENE's name with .png, in the current directory, unless that would replace a file that lancer
-    /// did not make. The file is written whole or not at all.
+    /// The extension says the format: .png, .jpg, .webp, .tif for displays, .hdr, .pfm, .exr for radiance. Without
+    /// it, SCENE's name with .png, in the current directory, unless that would replace a file that lancer did not
+    /// make. The file is written whole or not at all.
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
 
@@ -88,6 +96,34 @@ pub(crate) struct RenderArgs {
     /// Draw no progress and print no summary; warnings and errors are still told
     #[arg(short, long, help_heading = "Messages")]
     pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) encoding: EncodingArgs,
+}
+
+/// How the picture becomes a file.
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "File")]
+pub(crate) struct EncodingArgs {
+    /// The format, whatever the file's extension; `-` is a PNG without it
+    #[arg(long, value_name = "NAME", requires = "output", value_parser = format_parser())]
+    pub(crate) format: Option<ImageFormat>,
+
+    /// Bits a channel: PNG 8 or 16, TIFF 8, 16 or 32 (linear floats), EXR 32 or 16 (half floats)
+    #[arg(long, value_name = "N")]
+    pub(crate) bits: Option<u8>,
+
+    /// How pixels are packed, without losses: EXR zip, piz or none, TIFF zip or none
+    #[arg(long, value_name = "NAME", value_parser = compression_parser())]
+    pub(crate) compression: Option<Compression>,
+
+    /// The quality of a JPEG, 1 to 100; without it, 92
+    #[arg(long, value_name = "Q")]
+    pub(crate) quality: Option<u8>,
+
+    /// Pixels to the inch, for print: a note in the file, which changes no pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) dpi: Option<u16>,
 }
 
 /// What decides the pixels.
@@ -141,6 +177,11 @@ pub(crate) struct PictureArgs {
     /// Make the picture brighter (or darker, below 0) by EV stops
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = parse_exposure)]
     pub(crate) exposure: Option<f64>,
+
+    /// What becomes of light brighter than a display: linear cuts it, reinhard and filmic compress it; raw writes
+    /// linear values without sRGB encoding. Formats of radiance (.hdr, .pfm, .exr, 32-bit .tif) take none
+    #[arg(long, value_name = "CURVE", value_parser = tone_parser())]
+    pub(crate) tone: Option<ToneCurve>,
 }
 
 /// What decides how long it takes, and nothing in the pixels.
@@ -231,6 +272,82 @@ pub(crate) struct CompletionsArgs {
     pub(crate) shell: clap_complete::Shell,
 }
 
+/// `lancer verify`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct VerifyArgs {
+    /// A picture that lancer made, in any format but PFM
+    pub(crate) image: PathBuf,
+
+    /// The scene; without it, the one that the picture names, beside the picture or in the current directory
+    #[arg(long, value_name = "SCENE")]
+    pub(crate) scene: Option<OsString>,
+
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+
+    /// Print a JSON object instead
+    #[arg(long, help_heading = "Messages")]
+    pub(crate) json: bool,
+
+    /// Draw no progress; the verdict, warnings and errors are still told
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
+/// `lancer compare`.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct CompareArgs {
+    /// A picture: PNG, JPEG, WebP, TIFF, HDR, PFM or EXR
+    pub(crate) a: PathBuf,
+
+    /// Another one, of the same size
+    pub(crate) b: PathBuf,
+
+    /// What --threshold is about, and what --output shows
+    #[arg(long, value_name = "NAME", value_enum, default_value_t = Metric::Flip)]
+    pub(crate) metric: Metric,
+
+    /// Exit with 1 where the pictures are further apart: the metric above T, or for psnr below
+    #[arg(short, long, value_name = "T", allow_negative_numbers = true)]
+    pub(crate) threshold: Option<f64>,
+
+    /// Draw the differences: FLIP as colours from black to white, or the differences themselves
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Make drawn differences other than FLIP brighter by this factor
+    #[arg(long, value_name = "F", default_value_t = 8.0, value_parser = parse_factor)]
+    pub(crate) amplify: f32,
+
+    /// For FLIP: how many pixels an eye sees in a degree; 67 is a 0.7 m wide 4K display from 0.7 m away
+    #[arg(long, value_name = "P", default_value_t = PIXELS_PER_DEGREE, value_parser = parse_pixels_per_degree)]
+    pub(crate) pixels_per_degree: f64,
+
+    /// Print a JSON object instead
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A number that says how far two pictures are apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Metric {
+    /// The mean absolute difference
+    Mean,
+    /// The root of the mean square difference
+    Rmse,
+    /// The greatest difference
+    Max,
+    /// The peak signal-to-noise ratio, in decibels
+    Psnr,
+    /// How different they look to somebody who flips between them
+    Flip,
+}
+
 /// More threads than any machine has cores, and few enough that their stacks fit in memory.
 const MAX_THREADS: i64 = 1024;
 
@@ -248,6 +365,21 @@ fn instructions_parser() -> impl TypedValueParser<Value = InstructionSet> {
     })
 }
 
+fn tone_parser() -> impl TypedValueParser<Value = ToneCurve> {
+    PossibleValuesParser::new(ToneCurve::ALL.map(ToneCurve::name))
+        .map(|name| ToneCurve::from_name(&name).expect("the parser lets only these names through"))
+}
+
+fn format_parser() -> impl TypedValueParser<Value = ImageFormat> {
+    PossibleValuesParser::new(ImageFormat::ALL.map(ImageFormat::name))
+        .map(|name| ImageFormat::from_name(&name).expect("the parser lets only these names through"))
+}
+
+fn compression_parser() -> impl TypedValueParser<Value = Compression> {
+    PossibleValuesParser::new(Compression::ALL.map(Compression::name))
+        .map(|name| Compression::from_name(&name).expect("the parser lets only these names through"))
+}
+
 fn parse_region(text: &str) -> Result<Region, String> {
     let numbers = text.split(',').map(|number| number.trim().parse::<u32>()).collect::<Result<Vec<_>, _>>();
     match numbers.as_deref() {
@@ -260,6 +392,16 @@ fn parse_exposure(text: &str) -> Result<f64, String> {
     let stops = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
     let most = Tone::MAX_EXPOSURE;
     if stops.abs() <= most { Ok(stops) } else { Err(format!("must be between -{most} and {most}")) }
+}
+
+fn parse_factor(text: &str) -> Result<f32, String> {
+    let factor = text.parse::<f32>().map_err(|_| "must be a number".to_owned())?;
+    if factor > 0.0 && factor.is_finite() { Ok(factor) } else { Err("must be above 0".into()) }
+}
+
+fn parse_pixels_per_degree(text: &str) -> Result<f64, String> {
+    let pixels = text.parse::<f64>().map_err(|_| "must be a number".to_owned())?;
+    if (1.0..=1000.0).contains(&pixels) { Ok(pixels) } else { Err("must be from 1 to 1000".into()) }
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! Where a picture goes.
 
+use crate::args::EncodingArgs;
 use crate::error::Error;
 use crate::interrupt;
 use crate::source::Source;
 use crate::terminal::{self, STDOUT};
-use lancer_core::film::Image;
+use lancer_core::film::{Image, Tone};
 use lancer_core::render::CancelToken;
-use lancer_io::image::encode::{ImageFormat, Metadata, write, write_png};
+use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, encode};
 use lancer_io::output::write_atomically;
 use std::fmt;
 use std::fs;
@@ -16,35 +17,59 @@ use std::path::{Path, PathBuf};
 /// Where a picture goes, and in which format.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Destination {
-    /// A PNG on standard output.
-    Stdout,
+    /// Standard output.
+    Stdout(Encoding),
     /// A file.
     File {
         /// Which.
         path: PathBuf,
-        /// Its format.
-        format: ImageFormat,
+        /// How it is written.
+        encoding: Encoding,
         /// Whether the user named it.
         is_named: bool,
     },
 }
 
 impl Destination {
-    /// What the user means by `--output`; without it, the scene's name in the current directory.
+    /// What the user means by `--output` and the flags of its format; without them, a PNG with the scene's name in
+    /// the current directory.
     ///
     /// # Errors
-    /// No format of that name is written.
-    pub(crate) fn find(output: Option<&Path>, source: &Source) -> Result<Self, Error> {
-        let Some(output) = output else {
-            let mut name = source.stem().to_owned();
-            name.push(".png");
-            return Ok(Self::File { path: name.into(), format: ImageFormat::Png, is_named: false });
+    /// No format of that name is written, or it has not what was chosen of it.
+    pub(crate) fn find(output: Option<&Path>, args: &EncodingArgs, source: &Source) -> Result<Self, Error> {
+        let EncodingArgs { format, bits, compression, quality, dpi: _ } = *args;
+        let encoding = |usual: ImageFormat| {
+            Encoding::new(format.unwrap_or(usual), EncodingChoice { bits, compression, quality })
+                .map_err(|error| Error::usage(error.to_string()))
         };
-        if output == Path::new("-") {
-            return Ok(Self::Stdout);
+        match output {
+            None => {
+                let mut name = source.stem().to_owned();
+                name.push(".png");
+                Ok(Self::File { path: name.into(), encoding: encoding(ImageFormat::Png)?, is_named: false })
+            }
+            Some(output) if output == Path::new("-") => Ok(Self::Stdout(encoding(ImageFormat::Png)?)),
+            Some(output) => {
+                let usual = match format {
+                    Some(format) => Ok(format),
+                    None => ImageFormat::from_path(output),
+                };
+                let usual = usual.map_err(|error| Error::usage(error.to_string()))?;
+                Ok(Self::File { path: output.to_owned(), encoding: encoding(usual)?, is_named: true })
+            }
         }
-        let format = ImageFormat::from_path(output).map_err(|error| Error::usage(error.to_string()))?;
-        Ok(Self::File { path: output.to_owned(), format, is_named: true })
+    }
+
+    /// Whether it is standard output.
+    pub(crate) fn is_stdout(&self) -> bool {
+        matches!(self, Self::Stdout(_))
+    }
+
+    /// How the picture is written.
+    pub(crate) fn encoding(&self) -> Encoding {
+        match self {
+            Self::Stdout(encoding) | Self::File { encoding, .. } => *encoding,
+        }
     }
 
     /// Finds out before a long render what would make writing fail after it. It changes nothing.
@@ -53,11 +78,11 @@ impl Destination {
     /// Standard output is a terminal; the file or its directory cannot be written.
     pub(crate) fn check(&self) -> Result<(), Error> {
         match self {
-            Self::Stdout if io::stdout().is_terminal() => Err(Error::usage_with_hint(
-                "a terminal cannot show a PNG",
+            Self::Stdout(_) if io::stdout().is_terminal() => Err(Error::usage_with_hint(
+                "a terminal cannot show a picture",
                 "redirect standard output, or give a file: --output picture.png",
             )),
-            Self::Stdout => Ok(()),
+            Self::Stdout(_) => Ok(()),
             Self::File { path, is_named, .. } => {
                 let checked =
                     check_writable(path).and_then(|()| if *is_named { Ok(()) } else { check_ours(path) });
@@ -70,10 +95,20 @@ impl Destination {
     ///
     /// # Errors
     /// It cannot be written, or the user asked to stop before it was.
-    pub(crate) fn write(&self, image: &Image, cancel: &CancelToken) -> Result<(), Error> {
+    pub(crate) fn write(
+        &self,
+        image: &Image,
+        tone: Tone,
+        metadata: &Metadata,
+        cancel: &CancelToken,
+    ) -> Result<(), Error> {
         let written = match self {
-            Self::Stdout => write_to_stdout(image),
-            Self::File { path, format, .. } => write_to_file(path, *format, image, cancel),
+            Self::Stdout(encoding) => {
+                write_to_stdout(|out| encode::write(*encoding, image, tone, metadata, out))
+            }
+            Self::File { path, encoding, .. } => {
+                write_to_file(path, cancel, |out| encode::write(*encoding, image, tone, metadata, out))
+            }
         };
         // Whatever the error then says, it is not the file's fault.
         written.map_err(|error| if cancel.is_cancelled() { Error::Interrupted } else { error })
@@ -83,29 +118,33 @@ impl Destination {
 impl fmt::Display for Destination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Stdout => f.write_str(STDOUT),
+            Self::Stdout(_) => f.write_str(STDOUT),
             Self::File { path, .. } => path.display().fmt(f),
         }
     }
 }
 
-fn write_to_stdout(image: &Image) -> Result<(), Error> {
-    let mut png = Vec::new();
-    write_png(image, &Metadata::default(), &mut png).map_err(|error| Error::output(STDOUT, &error))?;
-    terminal::print(png).map_err(|error| match error {
+fn write_to_stdout(encode: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    let mut bytes = Vec::new();
+    encode(&mut bytes).map_err(|error| Error::output(STDOUT, &error))?;
+    terminal::print(bytes).map_err(|error| match error {
         // Unlike the end of a list, a picture that nobody took is news.
         Error::ReaderGone => Error::output(STDOUT, &io::ErrorKind::BrokenPipe.into()),
         error => error,
     })
 }
 
-fn write_to_file(path: &Path, format: ImageFormat, image: &Image, cancel: &CancelToken) -> Result<(), Error> {
+fn write_to_file(
+    path: &Path,
+    cancel: &CancelToken,
+    encode: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
     // A pipe, in which nothing can be unwound, may wait for its reader for ever.
     let is_replaced = fs::metadata(path).map_or(true, |found| found.is_file());
     let _handled = is_replaced.then(|| interrupt::only_cancels(cancel));
     let written = write_atomically(path, |out| {
         let mut out = UntilCancelled { out, cancel };
-        write(format, image, &Metadata::default(), &mut out)?;
+        encode(&mut out)?;
         out.flush()
     });
     written.map_err(|error| Error::output(path.display().to_string(), &error.source))
@@ -183,11 +222,12 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("old.png");
         fs::write(&path, "old").unwrap();
-        let destination = Destination::File { path: path.clone(), format: ImageFormat::Png, is_named: true };
+        let encoding = ImageFormat::Png.into();
+        let destination = Destination::File { path: path.clone(), encoding, is_named: true };
         let cancel = CancelToken::default();
         cancel.cancel();
 
-        let written = destination.write(&Image::black(2, 2), &cancel);
+        let written = destination.write(&Image::black(2, 2), Tone::default(), &Metadata::default(), &cancel);
 
         assert!(matches!(written, Err(Error::Interrupted)));
         assert_eq!(fs::read(&path).unwrap(), b"old");

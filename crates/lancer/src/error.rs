@@ -28,6 +28,8 @@ pub(crate) enum Error {
     Render(String),
     /// The user asked to stop.
     Interrupted,
+    /// Pictures are not the same, or further apart than they may be. It was told as a result.
+    Different,
     /// Who read standard output has seen enough, as in `lancer scenes | head -1`: nobody's fault.
     ReaderGone,
 }
@@ -52,6 +54,7 @@ impl Error {
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::ReaderGone => 0,
+            Self::Different => 1,
             Self::Usage { .. } => 2,
             Self::Scene(_) => 3,
             Self::Output { .. } => 4,

@@ -14,7 +14,9 @@ use lancer_core::render::{Control, Region, RenderError};
 use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
+use lancer_io::image::Metadata;
 use lancer_io::limits::Limits;
+use lancer_io::provenance::{Provenance, SceneHash, record_overrides};
 use std::num::NonZero;
 
 /// What to render, how, and where to.
@@ -28,6 +30,7 @@ pub(crate) struct Job {
     pub(crate) json: bool,
     pub(crate) quiet: bool,
     picture: PictureArgs,
+    dpi: Option<u16>,
 }
 
 /// What to render of a scene that is known.
@@ -46,12 +49,12 @@ impl Job {
     /// They contradict one another; a setting is out of its range; there is no such scene; the output cannot be
     /// written.
     pub(crate) fn new(args: RenderArgs) -> Result<Self, Error> {
-        let RenderArgs { scene, output, picture, work, reading, json, quiet } = args;
+        let RenderArgs { scene, output, picture, work, reading, json, quiet, encoding } = args;
         // The values that are not given are the defaults, which no given one can make illegal.
         settings_for(&picture, Settings::default()).validate().map_err(usage)?;
         let source = Source::find(scene.as_deref())?;
-        let destination = Destination::find(output.as_deref(), &source)?;
-        if json && destination == Destination::Stdout {
+        let destination = Destination::find(output.as_deref(), &encoding, &source)?;
+        if json && destination.is_stdout() {
             return Err(Error::usage("--json and the picture cannot both go to standard output"));
         }
         destination.check()?;
@@ -65,6 +68,7 @@ impl Job {
             json,
             quiet,
             picture,
+            dpi: encoding.dpi,
         })
     }
 
@@ -87,7 +91,10 @@ impl Job {
             let Settings { width, height, .. } = settings;
             return Err(usage(RenderError::Region { region, width, height }));
         }
-        let tone = Tone { exposure: self.picture.exposure.unwrap_or(scene.tone.exposure) };
+        let tone = Tone {
+            exposure: self.picture.exposure.unwrap_or(scene.tone.exposure),
+            curve: self.picture.tone.unwrap_or(scene.tone.curve),
+        };
         let shot = Shot { camera, settings, tone, region };
         let tiles = shot.tiles(self.tile_size);
         if tiles > MAX_TILES {
@@ -96,7 +103,29 @@ impl Job {
                 self.tile_size
             )));
         }
+        let (width, height) = shot.size();
+        self.destination.encoding().check_size(width, height).map_err(usage)?;
         Ok(shot)
+    }
+
+    /// What the file says of the picture beside its pixels.
+    pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
+        let (set, unrecorded) = record_overrides(&self.load.overrides);
+        let record = Provenance {
+            lancer: Provenance::VERSION.to_owned(),
+            scene: self.source.record(),
+            name: scene.name.clone(),
+            hash: SceneHash::of(scene, &shot.camera),
+            camera: self.picture.camera.clone(),
+            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
+            render: shot.settings,
+            tone: shot.tone,
+            set,
+            unrecorded,
+            encoding: self.destination.encoding(),
+            dpi: self.dpi,
+        };
+        record.metadata()
     }
 
     fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Camera, Error> {
@@ -157,7 +186,7 @@ fn settings_for(flags: &PictureArgs, scene: Settings) -> Settings {
     }
 }
 
-fn load_options(reading: ReadingArgs) -> LoadOptions {
+pub(crate) fn load_options(reading: ReadingArgs) -> LoadOptions {
     LoadOptions {
         limits: Limits::default(),
         allow_outside: reading.access.allow_outside,
@@ -166,7 +195,7 @@ fn load_options(reading: ReadingArgs) -> LoadOptions {
     }
 }
 
-fn compile_options(work: &WorkArgs) -> CompileOptions {
+pub(crate) fn compile_options(work: &WorkArgs) -> CompileOptions {
     let kd = KdSettings { leaf: work.kd_leaf, depth: work.kd_depth };
     let chosen = if kd == KdSettings::default() { Accelerator::default() } else { Accelerator::KdTree };
     CompileOptions {

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use lancer_gallery::BuiltinScene;
 use lancer_io::diagnostics::{Diagnostic, LoadError};
+use lancer_io::provenance::SceneSource;
 use lancer_io::{LoadOptions, Loaded};
 use std::ffi::OsStr;
 use std::fmt;
@@ -55,6 +56,17 @@ impl Source {
         match self {
             Self::Builtin(builtin) => OsStr::new(builtin.name()),
             Self::File(path) => path.file_stem().unwrap_or(OsStr::new("picture")),
+        }
+    }
+
+    /// What a picture says of where its scene comes from: of a file, the name alone.
+    pub(crate) fn record(&self) -> SceneSource {
+        match self {
+            Self::Builtin(builtin) => SceneSource::Builtin(builtin.name().to_owned()),
+            Self::File(path) => {
+                let name = path.file_name().unwrap_or_default();
+                SceneSource::File(name.to_string_lossy().into_owned())
+            }
         }
     }
 

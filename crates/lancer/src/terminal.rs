@@ -40,7 +40,7 @@ pub(crate) fn tell_error(error: &Error) {
         Error::Output { to, reason } => tell("error", ERROR, format_args!("cannot write {to}: {reason}")),
         Error::Render(message) => tell("error", ERROR, message),
         Error::Interrupted => note("interrupted"),
-        Error::ReaderGone => {}
+        Error::ReaderGone | Error::Different => {}
     }
 }
 

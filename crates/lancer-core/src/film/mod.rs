@@ -2,7 +2,7 @@
 
 mod tone;
 
-pub use tone::{Tone, to_srgb8};
+pub use tone::{Tone, ToneCurve, to_srgb8};
 
 /// A linear RGB picture with sRGB primaries. Shape: `pixels: [height * width][3]`, top row first.
 #[derive(Clone, Debug, PartialEq)]

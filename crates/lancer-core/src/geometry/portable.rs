@@ -53,6 +53,11 @@ pub fn exp2(exponent: f64) -> f64 {
     libm::exp2(exponent)
 }
 
+/// The logarithm of `x` to the base 10.
+pub fn log10(x: f64) -> f64 {
+    libm::log10(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,14 +7,16 @@
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
-use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits as DecoderLimits};
+use ::image::{
+    ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits as DecoderLimits,
+};
 use lancer_core::scene::ImageTexture;
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
 /// The formats that are read, as users know them.
-const FORMATS: &str = "PNG, JPEG, BMP, TGA";
+const FORMATS: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA";
 
 /// Bytes that a decoder may hold for each pixel of the largest texture: four channels of 16 bits.
 const BYTES_PER_PIXEL: u64 = 8;
@@ -22,7 +24,7 @@ const BYTES_PER_PIXEL: u64 = 8;
 /// What a decoder may hold beyond the pixels: tables, text chunks and colour profiles.
 const DECODER_OVERHEAD: u64 = 16 << 20;
 
-/// Reads a texture: PNG, JPEG, BMP or TGA, told apart by content and, for TGA, by extension.
+/// Reads a texture: PNG, JPEG, WebP, TIFF, BMP or TGA, told apart by content and, for TGA, by extension.
 ///
 /// # Errors
 /// The file cannot be read, is of another format, is broken, or has more pixels than
@@ -50,9 +52,7 @@ fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, L
     let format = format_of(path, bytes)?;
     let broken = |error: ImageError| LoadError::new(path, message_of(&error));
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = DecoderLimits::default();
-    limits.max_alloc = Some(most_pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(DECODER_OVERHEAD));
-    reader.limits(limits);
+    reader.limits(decoder_limits(most_pixels));
 
     let decoder = reader.into_decoder().map_err(broken)?;
     let (width, height) = decoder.dimensions();
@@ -60,12 +60,32 @@ fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, L
         let message = format!("{width} x {height} pixels are more than {most_pixels}, the most of a texture");
         return Err(LoadError::new(path, message));
     }
+    if matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F) {
+        return Err(Diagnostic::new(path, "holds floats, which are no colours of a surface")
+            .with_hint("save it with 8 or 16 bits a channel")
+            .into());
+    }
     DynamicImage::from_decoder(decoder).map_err(broken)
+}
+
+/// What a decoder may hold for an image of so many pixels.
+pub(super) fn decoder_limits(most_pixels: u64) -> DecoderLimits {
+    let mut limits = DecoderLimits::default();
+    limits.max_alloc = Some(most_pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(DECODER_OVERHEAD));
+    limits
 }
 
 fn format_of(path: &Path, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
     let is_read = |format: &ImageFormat| {
-        matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp | ImageFormat::Tga)
+        matches!(
+            format,
+            ImageFormat::Png
+                | ImageFormat::Jpeg
+                | ImageFormat::WebP
+                | ImageFormat::Tiff
+                | ImageFormat::Bmp
+                | ImageFormat::Tga
+        )
     };
     let format = ::image::guess_format(bytes).ok().or_else(|| {
         // TGA has no signature.
@@ -80,7 +100,7 @@ fn format_of(path: &Path, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
 }
 
 /// A decoder's error on one line, without the names of its types.
-fn message_of(error: &ImageError) -> String {
+pub(super) fn message_of(error: &ImageError) -> String {
     let words = error.to_string();
     format!("is a broken image: {}", words.split_whitespace().collect::<Vec<_>>().join(" "))
 }

@@ -185,7 +185,7 @@ impl Model {
         };
         let parts = self.parts.into_iter().map(node_of_part).collect::<Vec<_>>();
         let children = match self.tree {
-            Some(tree) => tree.insert_into(scene, parts),
+            Some(tree) => tree.insert_into(scene, &parts),
             None => parts.into_iter().map(|part| scene.insert(part)).collect(),
         };
         Node::group(self.name, children).with_transform(Transform::translate(self.origin))

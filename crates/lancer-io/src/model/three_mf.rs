@@ -61,11 +61,10 @@ fn root_part(package: &Package) -> Result<String, LoadError> {
     let Ok(bytes) = package.read(&path) else { return Ok(USUAL_PART.to_owned()) };
     let mut reader = Reader::new(&path, &bytes);
     while let Some(element) = reader.next()? {
-        if element.is_start() && element.name() == b"Relationship" && element.attribute("Type") == Some(MODEL)
-        {
-            if let Some(target) = element.text("Target") {
-                return Ok(part_name(&target));
-            }
+        let is_relationship = element.is_start() && element.name() == b"Relationship";
+        let is_of_model = is_relationship && element.attribute("Type") == Some(MODEL);
+        if let Some(target) = element.text("Target").filter(|_| is_of_model) {
+            return Ok(part_name(&target));
         }
     }
     Ok(USUAL_PART.to_owned())
@@ -179,7 +178,7 @@ impl<'a> Loader<'a> {
                     }
                 }
                 (Namespace::Core, b"object") => {
-                    self.object(name, &element, &mut reader, &properties, &mut part)?
+                    self.object(name, &element, &mut reader, &properties, &mut part)?;
                 }
                 (Namespace::Core, b"item") => part.items.push(use_of(name, &element, &mut part.named)?),
                 _ => self.pass_over(PassedOver::Element, &element),
@@ -457,7 +456,11 @@ fn unit(element: &Element) -> Result<f64, LoadError> {
         Some(b"inch") => 25.4,
         Some(b"foot") => 304.8,
         Some(b"meter") => 1000.0,
-        Some(_) => return Err(element.fault("is no unit of 3MF files").into()),
+        Some(other) => {
+            let message =
+                format!("unit is `{}`, which 3MF files do not know", String::from_utf8_lossy(other));
+            return Err(element.fault(message).into());
+        }
     })
 }
 

@@ -89,16 +89,12 @@ impl ModelTree {
 
     /// The tree of the nodes with visits, which are numbered anew.
     fn of_used(nodes: Vec<ModelNode>, roots: &[usize], visits: &[u64], upward: &[usize]) -> Self {
-        let mut place = vec![usize::MAX; nodes.len()];
-        let mut used = 0;
         let reached = upward.iter().copied().filter(|&index| visits[index] > 0).collect::<Vec<_>>();
         let mut is_reached = vec![false; nodes.len()];
         reached.iter().for_each(|&index| is_reached[index] = true);
-        for (index, place) in place.iter_mut().enumerate().filter(|(index, _)| is_reached[*index]) {
-            debug_assert!(visits[index] > 0);
-            *place = used;
-            used += 1;
-        }
+        let mut place = vec![usize::MAX; nodes.len()];
+        let kept = (0..nodes.len()).filter(|&index| is_reached[index]);
+        kept.enumerate().for_each(|(new, old)| place[old] = new);
         let moved = |indices: &[usize]| indices.iter().map(|&index| place[index]).collect::<Vec<_>>();
         let kept = nodes.into_iter().zip(&is_reached).filter(|(_, reached)| **reached);
         let kept = kept.map(|(node, _)| ModelNode { children: moved(&node.children), ..node });
@@ -150,7 +146,7 @@ impl ModelTree {
     /// Puts the nodes into a scene, of which a node of one part takes its shape and others hold parts as children.
     ///
     /// Returns the roots. What is drawn many times is one node, the child of many.
-    pub(super) fn insert_into(self, scene: &mut Scene, parts: Vec<Node>) -> Vec<NodeId> {
+    pub(super) fn insert_into(self, scene: &mut Scene, parts: &[Node]) -> Vec<NodeId> {
         let mut id_of_part = vec![None; parts.len()];
         let mut id_of_node = vec![None; self.nodes.len()];
         let mut nodes = self.nodes.into_iter().map(Some).collect::<Vec<_>>();
@@ -270,7 +266,7 @@ mod tests {
         assert_eq!(tree.count(|_| 1), 1);
         assert_eq!(tree.placed(Transform::IDENTITY).count(), deep);
         let mut scene = Scene::new("deep");
-        assert_eq!(tree.insert_into(&mut scene, vec![Node::default()]).len(), 1);
+        assert_eq!(tree.insert_into(&mut scene, &[Node::default()]).len(), 1);
     }
 
     #[test]

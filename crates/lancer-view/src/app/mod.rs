@@ -9,6 +9,7 @@ mod events;
 mod files;
 mod layout;
 mod live;
+mod making;
 mod perform;
 mod saving;
 mod shelf;
@@ -181,7 +182,7 @@ impl App {
         self.preferences.spoken_language()
     }
 
-    /// The exposure of the scene.
+    /// How the scene is shown.
     fn tone(&self) -> Tone {
         self.document.as_ref().map_or_else(Tone::default, |document| document.scene().tone)
     }

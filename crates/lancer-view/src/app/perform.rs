@@ -1,5 +1,6 @@
 //! What the user wants, carried out.
 
+use super::making::Making;
 use super::saving::{save_into_scene_file, save_picture, save_scene_as};
 use super::shelf::Showing;
 use super::{Action, App, Asking, Selection};
@@ -14,7 +15,7 @@ use crate::picture::color_image;
 use crate::preferences::Theme;
 use crate::worker::{Channel, RenderRequest};
 use eframe::egui::{Context, ViewportCommand};
-use lancer_core::film::Image;
+use lancer_core::film::{Image, Tone};
 use lancer_core::geometry::{Bounds, DVec2};
 use lancer_core::scene::{NodeId, Scene};
 use lancer_core::world::{ObjectId, World};
@@ -277,7 +278,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let scene = Arc::clone(document.scene());
         let (settings, tone) = (scene.settings, scene.tone);
-        let title = document.source().stem();
+        let source = document.source().clone();
         let request = RenderRequest {
             revision: document.revision(),
             options: self.options,
@@ -288,7 +289,7 @@ impl App {
             scene,
         };
         let id = self.worker.render(request);
-        self.shelf.begin(id, &title, (settings.width, settings.height), tone);
+        self.shelf.begin(id, &source, (settings.width, settings.height), tone);
     }
 
     /// Ends what is under way: a render, or else the opening of a scene.
@@ -300,20 +301,26 @@ impl App {
         }
     }
 
-    /// The picture that is shown, as it is saved; none while there is none, or it is not yet refined.
-    fn picture(&self) -> Option<Image> {
+    /// The picture that is shown, and how it is shown and saved; none while there is none, or it is not yet refined.
+    fn picture(&self) -> Option<(&Image, Tone)> {
         if self.shelf.showing == Showing::Live {
             let frame = self.live.frame().filter(|_| self.live.is_final())?;
-            Some(self.live.tone_of(self.tone()).expose(&frame.image))
+            Some((&frame.image, self.live.tone_of(self.tone())))
         } else {
-            self.shelf.shown().map(super::shelf::Kept::shown_image)
+            self.shelf.shown().map(super::shelf::Kept::picture)
         }
+    }
+
+    /// How the picture that is shown was made; none for the live one, which has no settings of its own.
+    fn making(&self) -> Option<Making> {
+        let is_kept = self.shelf.showing != Showing::Live;
+        self.shelf.shown().filter(|_| is_kept).map(super::shelf::Kept::making)
     }
 
     fn copy_picture(&mut self, ctx: &Context) {
         match self.picture() {
-            Some(image) => {
-                ctx.copy_image(color_image(&image));
+            Some((image, tone)) => {
+                ctx.copy_image(color_image(image, tone));
                 self.messages.info(self.language().say(COPIED));
             }
             None => self.copy_when_final = true,
@@ -344,9 +351,10 @@ impl App {
     fn save_picture_to(&mut self, ctx: &Context, path: &Path) {
         let language = self.language();
         match self.picture() {
-            Some(image) => {
-                let path = path.to_owned();
-                self.saver.start(waker(ctx), move || save_picture(&path, &image, language));
+            Some((image, tone)) => {
+                let (path, image, making) = (path.to_owned(), image.clone(), self.making());
+                self.saver
+                    .start(waker(ctx), move || save_picture(&path, &image, tone, making.as_ref(), language));
             }
             None => {
                 self.save_when_final = Some(path.to_owned());

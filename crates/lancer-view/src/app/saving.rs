@@ -1,11 +1,12 @@
 //! Pictures and scenes to files, on a thread of their own.
 
+use super::making::Making;
 use crate::language::{Language, Phrase};
 use lancer_core::camera::Camera;
-use lancer_core::film::Image;
+use lancer_core::film::{Image, Tone};
 use lancer_core::scene::Scene;
 use lancer_io::LoadOptions;
-use lancer_io::image::encode::{self, ImageFormat, Metadata};
+use lancer_io::image::{Encoding, ImageFormat, Metadata, encode};
 use lancer_io::output::write_atomically;
 use lancer_io::scene_file;
 use std::path::{Path, PathBuf};
@@ -86,11 +87,18 @@ impl Saver {
     }
 }
 
-/// Writes a picture as its name says, the bytes that `lancer render` writes.
-pub(crate) fn save_picture(path: &Path, image: &Image, language: Language) -> Saved {
+/// Writes a picture as its name says: for one whose `making` is known, the bytes that `lancer render` writes.
+pub(crate) fn save_picture(
+    path: &Path,
+    image: &Image,
+    tone: Tone,
+    making: Option<&Making>,
+    language: Language,
+) -> Saved {
     let write = || -> Result<(), String> {
-        let format = ImageFormat::from_path(path).map_err(|error| error.to_string())?;
-        write_atomically(path, |out| encode::write(format, image, &Metadata::default(), out))
+        let encoding = Encoding::from(ImageFormat::from_path(path).map_err(|error| error.to_string())?);
+        let metadata = making.map_or_else(Metadata::default, |making| making.metadata(encoding));
+        write_atomically(path, |out| encode::write(encoding, image, tone, &metadata, out))
             .map_err(|error| error.to_string())
     };
     match write() {

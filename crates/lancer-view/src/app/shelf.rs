@@ -1,10 +1,13 @@
 //! The renders that are kept side by side.
 
+use super::making::Making;
+use crate::Source;
 use crate::picture::{ImageView, PictureTexture};
 use crate::worker::{Progress, RenderId, Rendered};
 use eframe::egui::Context;
 use lancer_core::film::{Image, Tone};
 use lancer_core::integrator::RayCounts;
+use lancer_io::provenance::SceneSource;
 use std::time::Duration;
 
 /// A finished render.
@@ -15,6 +18,7 @@ pub(crate) struct Kept {
     pub(crate) title: String,
     /// How it is shown.
     pub(crate) tone: Tone,
+    source: SceneSource,
     texture: PictureTexture,
 }
 
@@ -37,9 +41,15 @@ impl Kept {
         text + &format!("{seconds:.2} s")
     }
 
-    /// The image as it is shown and saved, still linear.
-    pub(crate) fn shown_image(&self) -> Image {
-        self.tone.expose(&self.rendered.image)
+    /// The image, and how it is shown and saved.
+    pub(crate) fn picture(&self) -> (&Image, Tone) {
+        (&self.rendered.image, self.tone)
+    }
+
+    /// How it was made.
+    pub(crate) fn making(&self) -> Making {
+        let Self { rendered, tone, source, .. } = self;
+        Making { source: source.clone(), request: rendered.request.clone(), tone: *tone }
     }
 }
 
@@ -53,6 +63,8 @@ pub(crate) struct Running {
     pub(crate) title: String,
     /// How it is shown.
     pub(crate) tone: Tone,
+    /// Where the scene comes from.
+    pub(crate) source: SceneSource,
     /// The part of it that is done, 0 to 1.
     pub(crate) done: f32,
     /// The rays so far.
@@ -112,14 +124,15 @@ impl Default for Shelf {
 
 impl Shelf {
     /// Waits for a render that was asked for, and shows it as it grows.
-    pub(crate) fn begin(&mut self, id: RenderId, scene: &str, size: (u32, u32), tone: Tone) {
+    pub(crate) fn begin(&mut self, id: RenderId, source: &Source, size: (u32, u32), tone: Tone) {
         self.made += 1;
-        let title = format!("{} {}", self.made, scene);
+        let title = format!("{} {}", self.made, source.stem());
         self.running = Some(Running {
             id,
             size,
             title,
             tone,
+            source: source.record(),
             done: 0.0,
             rays: RayCounts::default(),
             elapsed: Duration::ZERO,
@@ -145,12 +158,12 @@ impl Shelf {
     /// Keeps a finished render.
     pub(crate) fn finish(&mut self, ctx: &Context, rendered: Rendered) {
         let Some(running) = self.running.take_if(|running| running.id == rendered.id) else { return };
-        let Running { title, tone, texture, .. } = running;
+        let Running { title, tone, source, texture, .. } = running;
         let texture = PictureTexture::new(ctx, &rendered.image, tone, false, texture);
         if self.kept.len() == MOST_KEPT {
             self.remove(0);
         }
-        self.kept.push(Kept { rendered, title, tone, texture });
+        self.kept.push(Kept { rendered, title, tone, source, texture });
         if self.showing == Showing::Running {
             self.showing = Showing::Kept(self.kept.len() - 1);
         }

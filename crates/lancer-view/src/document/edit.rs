@@ -90,7 +90,7 @@ impl EditKind {
     pub const fn name(self) -> Phrase {
         match self {
             Self::Settings => Phrase::new("Render Settings", "Réglages du rendu"),
-            Self::Tone => Phrase::new("Exposure", "Exposition"),
+            Self::Tone => Phrase::new("Tone", "Tons"),
             Self::Ambient => Phrase::new("Ambient Light", "Lumière ambiante"),
             Self::Background => Phrase::new("Background", "Arrière-plan"),
             Self::Material => Phrase::new("Material", "Matériau"),

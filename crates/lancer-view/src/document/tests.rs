@@ -112,7 +112,7 @@ fn an_edit_after_undo_forgets_what_was_undone() {
     let mut document = document();
     document.apply(moved(1.0));
     document.undo();
-    document.apply(Edit::Tone(Tone { exposure: 1.0 }));
+    document.apply(Edit::Tone(Tone { exposure: 1.0, ..Tone::default() }));
     assert!(!document.can_redo());
     assert_eq!(document.undo_name(), Some(EditKind::Tone));
 }
@@ -196,7 +196,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         let (node, material, number) = (nodes()[which], materials()[which], f64::from(value));
         match kind {
             0 => Edit::Settings(Settings { depth: u32::from(value), ..Settings::default() }),
-            1 => Edit::Tone(Tone { exposure: number }),
+            1 => Edit::Tone(Tone { exposure: number, ..Tone::default() }),
             2 => Edit::Ambient(Rgb::grey(number)),
             3 => Edit::Background(Rgb::grey(number)),
             4 => Edit::Material(material, Box::new(Material { ior: number, ..Material::named("new") })),

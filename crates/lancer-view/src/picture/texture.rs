@@ -3,7 +3,7 @@
 use eframe::egui::{
     Color32, ColorImage, Context, ImageData, Pos2, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
-use lancer_core::film::{Image, Tone, to_srgb8};
+use lancer_core::film::{Image, Tone};
 use std::sync::Arc;
 
 /// Texels along the side of one texture; every driver takes this much.
@@ -30,7 +30,7 @@ impl PictureTexture {
     pub fn new(ctx: &Context, image: &Image, tone: Tone, smooth: bool, previous: Option<Self>) -> Self {
         let magnified = if smooth { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
         let options = TextureOptions { minification: TextureOptions::LINEAR.minification, ..magnified };
-        let whole = Arc::new(color_image(&tone.expose(image)));
+        let whole = Arc::new(color_image(image, tone));
         let (width, height) = (image.width(), image.height());
         let mut old = previous.map_or_else(Vec::new, |previous| previous.parts).into_iter();
         let mut parts = Vec::new();
@@ -69,8 +69,8 @@ impl PictureTexture {
     }
 }
 
-/// A linear image as egui takes one: sRGB, clamped, opaque.
-pub fn color_image(image: &Image) -> ColorImage {
+/// A linear image as egui takes one: with its tone, opaque.
+pub fn color_image(image: &Image, tone: Tone) -> ColorImage {
     let size = [image.width() as usize, image.height() as usize];
-    ColorImage::from_rgb(size, to_srgb8(image).as_flattened())
+    ColorImage::from_rgb(size, tone.to_codes8(image).as_flattened())
 }

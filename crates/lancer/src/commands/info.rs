@@ -7,7 +7,7 @@ use crate::source::Source;
 use crate::{json, process, terminal};
 use indicatif::{HumanBytes, HumanCount};
 use lancer_core::camera::Camera;
-use lancer_core::film::Tone;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::geometry::{Bounds, DVec3};
 use lancer_core::scene::{Light, Scene, Settings};
 use lancer_core::world::{CompileOptions, World, WorldStatistics};
@@ -142,8 +142,11 @@ fn picture(settings: &Settings, tone: Tone) -> String {
             write!(told, ", no {name}").expect("memory can be written");
         }
     }
-    if tone != Tone::default() {
+    if tone.exposure != 0.0 {
         write!(told, ", exposure {}", short(tone.exposure)).expect("memory can be written");
+    }
+    if tone.curve != ToneCurve::default() {
+        write!(told, ", tone {}", tone.curve.name()).expect("memory can be written");
     }
     told
 }
@@ -228,6 +231,7 @@ struct PictureJson {
     reflection: bool,
     refraction: bool,
     exposure: f64,
+    tone: &'static str,
 }
 
 #[derive(Serialize)]
@@ -240,8 +244,9 @@ impl PictureJson {
     fn of(scene: &Scene) -> Self {
         let Settings { width, height, samples, depth, ao, shadows, reflection, refraction } = scene.settings;
         let ao = OcclusionJson { samples: ao.samples, distance: ao.distance };
-        let exposure = scene.tone.exposure;
-        Self { width, height, samples, depth, ao, shadows, reflection, refraction, exposure }
+        let Tone { exposure, curve } = scene.tone;
+        let tone = curve.name();
+        Self { width, height, samples, depth, ao, shadows, reflection, refraction, exposure, tone }
     }
 }
 

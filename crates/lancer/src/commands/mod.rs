@@ -1,12 +1,14 @@
 //! What the program does, one file a subcommand.
 
 mod check;
+mod compare;
 mod completions;
 mod info;
 mod man;
 mod render;
 mod scenes;
 mod schema;
+mod verify;
 mod window;
 
 use crate::args::{Args, Command};
@@ -26,5 +28,7 @@ pub(crate) fn run(args: Args) -> Result<(), Error> {
         Some(Command::Schema) => schema::run(),
         Some(Command::Completions(args)) => completions::run(&args),
         Some(Command::Man) => man::run(),
+        Some(Command::Verify(args)) => verify::run(*args),
+        Some(Command::Compare(args)) => compare::run(&args),
     }
 }

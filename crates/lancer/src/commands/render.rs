@@ -11,6 +11,7 @@ use lancer_core::render::{CancelToken, Control, Render, render, with_threads};
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::image::Metadata;
 use std::time::{Duration, Instant};
 
 /// Renders, writes, and tells what was done.
@@ -31,6 +32,7 @@ fn run_job(job: &Job) -> Result<(), Error> {
     let Loaded { scene, mut warnings, .. } = loaded;
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;
+    let metadata = timed(&mut stages.load, || job.metadata(&scene, &shot));
 
     let world =
         timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &job.compile)))
@@ -38,8 +40,8 @@ fn run_job(job: &Job) -> Result<(), Error> {
     drop(scene);
 
     let cancel = CancelToken::default();
-    let picture = timed(&mut stages.render, || trace(job, &shot, &world, &cancel, &progress))?;
-    timed(&mut stages.write, || write(job, &shot, &picture, &cancel, &progress))?;
+    let picture = timed(&mut stages.render, || trace(&shot, job.tile_size, &world, &cancel, &progress))?;
+    timed(&mut stages.write, || write(job, &shot, &picture, &metadata, &cancel, &progress))?;
 
     let late = report::warnings_about(&picture, &world, &shot);
     let late = late.iter().map(|message| job.source.diagnostic(message)).collect::<Vec<_>>();
@@ -49,9 +51,13 @@ fn run_job(job: &Job) -> Result<(), Error> {
     tell(&Report { job, shot: &shot, world, rays, stages, warnings: &warnings })
 }
 
-fn trace(
-    job: &Job,
+/// Renders, and draws how it goes on; a request to stop cancels it.
+///
+/// # Errors
+/// It was cancelled, or failed.
+pub(super) fn trace(
     shot: &Shot,
+    tile_size: u32,
     world: &World,
     cancel: &CancelToken,
     progress: &Progress,
@@ -59,11 +65,8 @@ fn trace(
     let _handled = interrupt::cancels(cancel);
     let (width, height) = shot.size();
     let bar = progress.pixels(u64::from(width) * u64::from(height));
-    let control = Control {
-        cancel: cancel.clone(),
-        on_tile: &|tile, rays| bar.advance(tile, rays),
-        tile_size: job.tile_size,
-    };
+    let control =
+        Control { cancel: cancel.clone(), on_tile: &|tile, rays| bar.advance(tile, rays), tile_size };
     Ok(render(world, &shot.camera, &shot.settings, shot.region, &control)?)
 }
 
@@ -71,10 +74,11 @@ fn write(
     job: &Job,
     shot: &Shot,
     picture: &Render,
+    metadata: &Metadata,
     cancel: &CancelToken,
     progress: &Progress,
 ) -> Result<(), Error> {
-    progress.during("writing", || job.destination.write(&shot.tone.expose(&picture.image), cancel))
+    progress.during("writing", || job.destination.write(&picture.image, shot.tone, metadata, cancel))
 }
 
 fn tell(report: &Report) -> Result<(), Error> {
@@ -84,10 +88,10 @@ fn tell(report: &Report) -> Result<(), Error> {
     if report.job.json { terminal::print(report.json()) } else { Ok(()) }
 }
 
-/// Does `work` and notes how long it took.
+/// Does `work` and notes how long it took, beside what was noted before.
 fn timed<T>(duration: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
-    *duration = start.elapsed();
+    *duration += start.elapsed();
     result
 }

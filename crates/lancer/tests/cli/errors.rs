@@ -1,6 +1,6 @@
 //! What goes wrong, the exit codes that say so, and that it shows before the long work.
 
-use crate::sandbox::{SCENE, Sandbox, text};
+use crate::sandbox::{SCENE, Sandbox};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -39,7 +39,7 @@ fn wrong_flags_exit_with_2() {
         "--kd-depth 65",
         "--tile-size 0",
         "--set camera.fov",
-        "-o picture.jpg",
+        "-o picture.gif",
         "-o picture",
         "-o -  --json",
         "--width 4 --width 5",
@@ -237,7 +237,7 @@ fn without_its_display_it_is_said_how_to_render() {
     let sandbox = Sandbox::new();
     for (variable, display) in [("DISPLAY", ":65000"), ("DISPLAY", "nonsense"), ("WAYLAND_DISPLAY", "none")] {
         let run = sandbox.lancer(["scene.yaml"]).env(variable, display).output().unwrap();
-        let said = text(&run.stderr);
+        let said = crate::sandbox::text(&run.stderr);
         assert_eq!(run.status.code(), Some(2), "{variable}={display}: {said}");
         assert!(said.contains("lancer render scene.yaml"), "{said}");
     }

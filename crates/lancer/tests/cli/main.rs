@@ -1,5 +1,6 @@
 //! The program as its users meet it: run from outside, judged by exit codes, streams and files.
 
+mod compare;
 mod errors;
 mod inspect;
 #[cfg(unix)]
@@ -11,5 +12,6 @@ mod sandbox;
 #[cfg(unix)]
 mod terminal;
 mod texts;
+mod verify;
 mod whole;
 mod work;

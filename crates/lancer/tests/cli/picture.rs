@@ -97,47 +97,47 @@ fn exposure_multiplies_linear_values_by_powers_of_2() {
 #[test]
 fn exposure_overrides_the_scenes() {
     let sandbox = Sandbox::new();
-    let (plain, brighter) = (sandbox.bytes(""), sandbox.bytes("--exposure 1"));
+    let (plain, brighter) = (sandbox.exr(""), sandbox.exr("--exposure 1"));
     let set = "--set render.exposure=1";
-    assert_eq!(sandbox.bytes(set), brighter);
-    assert_eq!(sandbox.bytes(&format!("{set} --exposure 0")), plain);
+    assert_eq!(sandbox.exr(set), brighter);
+    assert_eq!(sandbox.exr(&format!("{set} --exposure 0")), plain);
 }
 
 #[test]
 fn shadows_reflection_and_refraction_are_turned_off_by_flags_and_by_the_scene_alike() {
     let sandbox = Sandbox::new();
-    let plain = sandbox.bytes("");
+    let plain = sandbox.exr("");
     for (name, kind) in [("shadows", "shadow"), ("reflection", "reflection"), ("refraction", "refraction")] {
-        let without = sandbox.bytes(&format!("--no-{name}"));
+        let without = sandbox.exr(&format!("--no-{name}"));
         assert_ne!(without, plain, "{name}");
-        assert_eq!(without, sandbox.bytes(&format!("--set render.{name}=false")), "{name}");
+        assert_eq!(without, sandbox.exr(&format!("--set render.{name}=false")), "{name}");
         let rays = sandbox.json(&format!("render scene.yaml --no-{name} --json"))["rays"].clone();
         assert_eq!(rays[kind], 0, "{rays}");
     }
-    let local = sandbox.bytes("--no-reflection --no-refraction");
-    assert_eq!(local, sandbox.bytes("--depth 0"));
+    let local = sandbox.exr("--no-reflection --no-refraction");
+    assert_eq!(local, sandbox.exr("--depth 0"));
 }
 
 #[test]
 fn what_is_hidden_is_not_drawn() {
     let sandbox = Sandbox::new();
-    let hidden = sandbox.bytes("--set objects.1.hidden=true");
+    let hidden = sandbox.exr("--set objects.1.hidden=true");
     let line = "  - {shape: sphere, material: mirror, transform: [{translate: [-1.2, 1, 0]}]}\n";
     assert!(SCENE.contains(line));
     sandbox.write("scene.yaml", SCENE.replace(line, ""));
-    assert_eq!(sandbox.bytes(""), hidden);
+    assert_eq!(sandbox.exr(""), hidden);
 }
 
 #[test]
 fn set_changes_the_scene_as_if_the_file_said_so() {
     let sandbox = Sandbox::new();
-    let set = sandbox.bytes("--set camera.fov=60 --set materials.floor.diffuse=0.5");
-    assert_ne!(set, sandbox.bytes(""));
+    let set = sandbox.exr("--set camera.fov=60 --set materials.floor.diffuse=0.5");
+    assert_ne!(set, sandbox.exr(""));
     let written = SCENE
         .replace("target: [0, 1, 0], fov: 40", "target: [0, 1, 0], fov: 60")
         .replace("floor: {", "floor: {diffuse: 0.5, ");
     sandbox.write("scene.yaml", written);
-    assert_eq!(sandbox.bytes(""), set);
+    assert_eq!(sandbox.exr(""), set);
 }
 
 #[test]

@@ -21,7 +21,15 @@ fn completions_know_the_flags() {
 #[test]
 fn the_manual_has_every_command_and_flag() {
     let page = text(&Sandbox::new().ok("man").stdout);
-    for part in ["LANCER RENDER", "LANCER CHECK", r"\-\-region", r"\-\-allow\-outside", "130"] {
+    for part in [
+        "LANCER RENDER",
+        "LANCER CHECK",
+        "LANCER VERIFY",
+        "LANCER COMPARE",
+        r"\-\-region",
+        r"\-\-allow\-outside",
+        "130",
+    ] {
         assert!(page.contains(part), "{part}");
     }
 }

@@ -1,15 +1,16 @@
 //! Built-in scenes and models as files that stand alone, which make the same pictures.
 
-use crate::sandbox::{MODEL, Sandbox};
+use crate::sandbox::{MODEL, Picture, Sandbox, read_exr};
 use lancer_io::scene_file::write_whole;
 use lancer_io::{LoadOptions, load};
 
 /// Small, but with the terms that a scene has.
 const SIZE: &str = "--width 40 --height 30 --samples 1 --ao 2";
 
-fn picture(sandbox: &Sandbox, scene: &str) -> Vec<u8> {
+/// The pixels: what the file says of its scene differs, as it should.
+fn picture(sandbox: &Sandbox, scene: &str) -> Picture<f32> {
     sandbox.ok(&format!("render {scene} -o picture.exr {SIZE}"));
-    sandbox.read("picture.exr")
+    read_exr(&sandbox.path("picture.exr"))
 }
 
 #[test]

@@ -165,7 +165,7 @@ impl<'a> MeshMaker<'a> {
             let unit = |&vertex: &u32| DVec3::from_array(normals.get(vertex)).try_normalize();
             match used.iter().map(unit).collect::<Option<Vec<_>>>() {
                 Some(units) => {
-                    data.normals = units.iter().map(|unit| unit.to_array().map(|x| x as f32)).collect()
+                    data.normals = units.iter().map(|unit| unit.to_array().map(|x| x as f32)).collect();
                 }
                 None => warnings
                     .add(&normals.pointer, "has a normal that is zero or not finite; facets are drawn"),
@@ -231,8 +231,7 @@ const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
 
 fn clamped(x: f64) -> f64 {
-    // Not a number becomes 0.
-    x.max(0.0).min(1.0)
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
 fn fault_of_mesh(error: &MeshError, at: &str) -> Fault {

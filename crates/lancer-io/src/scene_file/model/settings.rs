@@ -3,11 +3,14 @@
 use super::channels::Channels;
 use super::number::{Exposure, FieldOfView, NotNegative, Number, Positive, Whole};
 use super::transform::Vector;
+use crate::scene_file::deserialize::{Forms, OneOf};
 use lancer_core::camera::{Camera, CameraError};
-use lancer_core::film::Tone;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::scene::{AmbientOcclusion, Settings, SettingsError};
-use schemars::JsonSchema;
-use serde::Deserialize;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Unexpected;
+use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 
 /// A perspective camera, in the world.
 #[derive(Default, Deserialize, JsonSchema)]
@@ -96,6 +99,42 @@ struct RenderFields {
     refraction: bool,
     /// How much brighter the picture is made, in stops: one doubles it, -1 halves it; default 0.
     exposure: Number<Exposure>,
+    /// How what is brighter than a display is shown, in files for displays; default linear, which cuts it.
+    tone: ToneFile,
+}
+
+/// A tone curve, by its name.
+#[derive(Default)]
+struct ToneFile(ToneCurve);
+
+impl Forms for ToneFile {
+    const FORMS: &'static str = "linear, reinhard, filmic or raw";
+
+    fn from_text<E: serde::de::Error>(text: &str) -> Result<Self, E> {
+        ToneCurve::from_name(text)
+            .map(Self)
+            .ok_or_else(|| E::invalid_value(Unexpected::Str(text), &Self::FORMS))
+    }
+}
+
+impl<'de> Deserialize<'de> for ToneFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        OneOf::deserialize(deserializer)
+    }
+}
+
+impl JsonSchema for ToneFile {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Tone".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "enum": ToneCurve::ALL.map(ToneCurve::name) })
+    }
 }
 
 /// Ambient occlusion.
@@ -123,6 +162,7 @@ impl Default for RenderFields {
             reflection,
             refraction,
             exposure: Number::default_of(Tone::default().exposure),
+            tone: ToneFile::default(),
         }
     }
 }
@@ -148,7 +188,7 @@ impl TryFrom<RenderFields> for RenderFile {
             reflection: fields.reflection,
             refraction: fields.refraction,
         };
-        let tone = Tone { exposure: fields.exposure.get() };
+        let tone = Tone { exposure: fields.exposure.get(), curve: fields.tone.0 };
         settings.validate().map(|()| Self { settings, tone })
     }
 }

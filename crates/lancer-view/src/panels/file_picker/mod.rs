@@ -11,6 +11,7 @@ pub use state::{FilePicker, Place, Purpose};
 
 use crate::Phrase;
 use lancer_io::SCENE_EXTENSIONS;
+use lancer_io::image::ImageFormat;
 use lancer_io::model::model_extensions;
 
 impl Purpose {
@@ -35,7 +36,7 @@ impl Purpose {
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
             Self::Open => SCENE_EXTENSIONS.into_iter().chain(model_extensions()).collect(),
-            Self::SavePicture => vec!["png", "exr"],
+            Self::SavePicture => ImageFormat::EXTENSIONS.to_vec(),
             Self::SaveScene => vec!["yaml", "yml"],
         }
     }

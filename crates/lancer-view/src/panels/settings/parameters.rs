@@ -49,6 +49,14 @@ pub(super) const EXPOSURE: Parameter = parameter(
     ),
 );
 
+pub(super) const CURVE: Parameter = parameter(
+    ("Tone curve", "Courbe de tons"),
+    (
+        "What becomes of light brighter than the screen: it is cut, or compressed as by Reinhard or by film. Raw shows linear values as they are, too dark.",
+        "Ce que devient la lumière plus vive que l’écran : elle est coupée, ou comprimée à la Reinhard ou comme un film. Brut montre les valeurs linéaires telles quelles, trop sombres.",
+    ),
+);
+
 pub(super) const DEPTH: Parameter = parameter(
     ("Depth", "Profondeur"),
     (

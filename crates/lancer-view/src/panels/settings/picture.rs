@@ -4,7 +4,7 @@ use super::super::fields::Rows;
 use super::parameters as p;
 use crate::Phrase;
 use lancer_core::accel::{Accelerator, KdTree};
-use lancer_core::film::Tone;
+use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::scene::{AmbientOcclusion, Settings};
 use lancer_core::world::CompileOptions;
 
@@ -107,6 +107,17 @@ pub(super) fn film(
 ) {
     rows.number(&p::SUBPIXELS, &mut settings.samples, own.samples, 1..=Settings::MAX_SAMPLES, 0.05);
     rows.number(&p::EXPOSURE, &mut tone.exposure, own_tone.exposure, -MAX_EXPOSURE..=MAX_EXPOSURE, 0.02);
+    let curves = ToneCurve::ALL.map(|curve| (curve, curve_name(curve)));
+    rows.choice(&p::CURVE, &mut tone.curve, own_tone.curve, &curves);
+}
+
+fn curve_name(curve: ToneCurve) -> Phrase {
+    match curve {
+        ToneCurve::Linear => Phrase::new("None: cut", "Aucune : coupé"),
+        ToneCurve::Reinhard => Phrase::same("Reinhard"),
+        ToneCurve::Filmic => Phrase::new("Filmic", "Film"),
+        ToneCurve::Raw => Phrase::new("Raw: no sRGB", "Brut : sans sRGB"),
+    }
 }
 
 /// Stops beyond which every picture is black or white.

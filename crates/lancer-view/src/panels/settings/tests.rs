@@ -6,6 +6,7 @@ use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lancer_core::accel::Accelerator;
+use lancer_core::film::ToneCurve;
 use lancer_core::scene::{AmbientOcclusion, Settings};
 
 /// A panel over a document that the actions are carried out on.
@@ -166,6 +167,17 @@ fn light_background_and_exposure_are_set() {
     set_number(&mut window, "Exposition", "-1");
     let scene = window.state().document.scene();
     assert_eq!((scene.ambient.g, scene.background.b, scene.tone.exposure), (1.5, 0.25, -1.0));
+}
+
+#[test]
+fn a_tone_curve_is_chosen() {
+    for (language, list, name) in
+        [(Language::English, "Tone curve", "Filmic"), (Language::French, "Courbe de tons", "Film")]
+    {
+        let mut window = window(language);
+        choose(&mut window, list, name);
+        assert_eq!(window.state().document.scene().tone.curve, ToneCurve::Filmic);
+    }
 }
 
 #[test]
