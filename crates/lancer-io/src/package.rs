@@ -4,10 +4,11 @@
 //! says of their number. Nothing is written to disk, so that no name in an archive can reach anything there.
 
 use crate::limits::Limits;
+use crate::resolver::path_below;
 use flate2::read::MultiGzDecoder;
 use std::fmt;
 use std::io::{Cursor, Read};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -112,17 +113,8 @@ impl Package {
     pub(crate) fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String> {
         let inside = from.strip_prefix(&self.path).unwrap_or(Path::new(""));
         let folder = inside.parent().unwrap_or(Path::new(""));
-        let portable = reference.replace('\\', "/");
-        let outside = || format!("`{reference}` lies outside of the archive");
-        let mut found = PathBuf::new();
-        for component in folder.join(&portable).components() {
-            match component {
-                Component::Normal(name) => found.push(name),
-                Component::CurDir => {}
-                Component::ParentDir if found.pop() => {}
-                _ => return Err(outside()),
-            }
-        }
+        let found = path_below(folder, reference)
+            .ok_or_else(|| format!("`{reference}` lies outside of the archive"))?;
         let path = self.path.join(&found);
         match self.index_of(&path) {
             Some(_) => Ok(path),
