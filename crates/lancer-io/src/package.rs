@@ -10,6 +10,7 @@ use std::fmt;
 use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -77,6 +78,10 @@ pub(crate) struct Package {
     path: PathBuf,
     archive: ZipArchive<Cursor<Arc<[u8]>>>,
     limits: Limits,
+    /// The archive's own length, in bytes.
+    length: u64,
+    /// What has been unpacked of it.
+    unpacked: Arc<AtomicU64>,
 }
 
 impl fmt::Debug for Package {
@@ -91,8 +96,9 @@ impl Package {
     /// # Errors
     /// A message without a place.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>, limits: Limits) -> Result<Self, String> {
+        let length = bytes.len() as u64;
         let archive = ZipArchive::new(Cursor::new(bytes.into())).map_err(|error| message_of(&error))?;
-        Ok(Self { path: path.to_owned(), archive, limits })
+        Ok(Self { path: path.to_owned(), archive, limits, length, unpacked: Arc::default() })
     }
 
     /// The names of the files in it, with `/` between folders, in the archive's order.
@@ -132,7 +138,14 @@ impl Package {
         let mut archive = self.archive.clone();
         let file = archive.by_index(index).map_err(|error| message_of(&error))?;
         let packed = file.compressed_size();
-        unpack(file, packed, &self.limits)
+        let bytes = unpack(file, packed, &self.limits)?;
+        // A thousand small files, each unpacked to what small ones may be, are a bomb too.
+        let most = self.length.saturating_mul(MOST_RATIO).max(SMALL);
+        let unpacked = self.unpacked.fetch_add(bytes.len() as u64, Ordering::Relaxed) + bytes.len() as u64;
+        if unpacked > most {
+            return Err(format!("unpacks, with the files before it, to more than {most} bytes, from {}", self.length));
+        }
+        Ok(bytes)
     }
 
     fn index_of(&self, path: &Path) -> Option<usize> {
