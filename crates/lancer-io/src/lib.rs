@@ -62,4 +62,4 @@ pub mod resolver;
 pub mod scene_file;
 pub mod showcase;
 
-pub use load::{LoadOptions, Loaded, SCENE_EXTENSIONS, is_scene_file, load};
+pub use load::{LoadOptions, Loaded, SCENE_EXTENSIONS, is_scene_file, load, load_with};

@@ -55,15 +55,24 @@ pub const SCENE_EXTENSIONS: [&str; 3] = ["yaml", "yml", "json"];
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     let mut resolver = Resolver::for_file(path, options.allow_outside, options.limits);
     resolver.progress = options.progress.clone();
+    load_with(path, &resolver, options)
+}
+
+/// As [`load`], from what `resolver` opens: files in memory, say. The limits, and what may be opened, are the
+/// resolver's, not those of `options`.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, resolver: &Resolver, options: &LoadOptions) -> Result<Loaded, LoadError> {
     if is_scene_file(path) {
         let bytes = resolver.read(path)?;
-        let mut assets = Files { resolver, options: options.model };
-        return scene_file::read(path, &bytes, &options.overrides, &mut assets, &options.limits);
+        let mut assets = Files { resolver: resolver.clone(), options: options.model };
+        return scene_file::read(path, &bytes, &options.overrides, &mut assets, &resolver.limits);
     }
     if !model::is_model_file(path) {
         return Err(unknown_kind(path));
     }
-    let mut model = model::load(path, &resolver, &options.model)?;
+    let mut model = model::load(path, resolver, &options.model)?;
     let mut warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
     if scene.tone.exposure != 0.0 {

@@ -4,11 +4,13 @@
 //! says of their number. Nothing is written to disk, so that no name in an archive can reach anything there.
 
 use crate::limits::Limits;
+use crate::resolver::path_below;
 use flate2::read::MultiGzDecoder;
 use std::fmt;
 use std::io::{Cursor, Read};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
@@ -76,6 +78,10 @@ pub(crate) struct Package {
     path: PathBuf,
     archive: ZipArchive<Cursor<Arc<[u8]>>>,
     limits: Limits,
+    /// The archive's own length, in bytes.
+    length: u64,
+    /// What has been unpacked of it.
+    unpacked: Arc<AtomicU64>,
 }
 
 impl fmt::Debug for Package {
@@ -90,8 +96,9 @@ impl Package {
     /// # Errors
     /// A message without a place.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>, limits: Limits) -> Result<Self, String> {
+        let length = bytes.len() as u64;
         let archive = ZipArchive::new(Cursor::new(bytes.into())).map_err(|error| message_of(&error))?;
-        Ok(Self { path: path.to_owned(), archive, limits })
+        Ok(Self { path: path.to_owned(), archive, limits, length, unpacked: Arc::default() })
     }
 
     /// The names of the files in it, with `/` between folders, in the archive's order.
@@ -112,17 +119,8 @@ impl Package {
     pub(crate) fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf, String> {
         let inside = from.strip_prefix(&self.path).unwrap_or(Path::new(""));
         let folder = inside.parent().unwrap_or(Path::new(""));
-        let portable = reference.replace('\\', "/");
-        let outside = || format!("`{reference}` lies outside of the archive");
-        let mut found = PathBuf::new();
-        for component in folder.join(&portable).components() {
-            match component {
-                Component::Normal(name) => found.push(name),
-                Component::CurDir => {}
-                Component::ParentDir if found.pop() => {}
-                _ => return Err(outside()),
-            }
-        }
+        let found = path_below(folder, reference)
+            .ok_or_else(|| format!("`{reference}` lies outside of the archive"))?;
         let path = self.path.join(&found);
         match self.index_of(&path) {
             Some(_) => Ok(path),
@@ -140,7 +138,17 @@ impl Package {
         let mut archive = self.archive.clone();
         let file = archive.by_index(index).map_err(|error| message_of(&error))?;
         let packed = file.compressed_size();
-        unpack(file, packed, &self.limits)
+        let bytes = unpack(file, packed, &self.limits)?;
+        // A thousand small files, each unpacked to what small ones may be, are a bomb too.
+        let most = self.length.saturating_mul(MOST_RATIO).max(SMALL);
+        let unpacked = self.unpacked.fetch_add(bytes.len() as u64, Ordering::Relaxed) + bytes.len() as u64;
+        if unpacked > most {
+            return Err(format!(
+                "unpacks, with the files before it, to more than {most} bytes, from {}",
+                self.length
+            ));
+        }
+        Ok(bytes)
     }
 
     fn index_of(&self, path: &Path) -> Option<usize> {

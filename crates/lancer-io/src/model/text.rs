@@ -183,6 +183,15 @@ fn is_separator(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b'\x0b' | b'\x0c')
 }
 
+/// A name as models keep it: no longer than a person writes, since what a file says once a model may hold for each of
+/// a million parts.
+pub(super) fn kept_name(name: &str) -> String {
+    name.chars().take(LONGEST_NAME_KEPT).collect()
+}
+
+/// The longest name of a part or a material, in characters.
+const LONGEST_NAME_KEPT: usize = 255;
+
 /// A name in the file, and where.
 pub(super) struct Reference {
     pub(super) name: String,

@@ -12,6 +12,7 @@ mod xml;
 
 use self::xml::{Element, Namespace, Reader};
 use super::polygons::{Corner, Meshes, NONE, Polygons};
+use super::text::kept_name;
 use super::tree::{Grown, ModelNode, ModelTree, TreeError};
 use super::{Model, ModelOptions, ModelPart, UpAxis, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -23,6 +24,7 @@ use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::Material;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Where the model is in an archive that does not say it.
@@ -37,28 +39,28 @@ pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> 
     let mut loader = Loader::new(&package, resolver.limits, options);
     let mut items = Vec::new();
     let mut scale = 1.0;
-    let mut waiting = vec![root.clone()];
-    let mut read = HashSet::from([root.clone()]);
+    let mut waiting = vec![Rc::clone(&root)];
+    let mut read = HashSet::from([Rc::clone(&root)]);
     while let Some(name) = waiting.pop() {
         let part = loader.read_part(&name)?;
         if name == root {
             (items, scale) = (part.items, part.millimetres);
         }
         for further in part.named {
-            if read.insert(further.clone()) {
+            if read.insert(Rc::clone(&further)) {
                 waiting.push(further);
             }
         }
     }
-    loader.finish(path, &root, items, scale)
+    loader.finish(path, &root, &items, scale)
 }
 
 /// The part that the archive says is its model, or else the usual one.
-fn root_part(package: &Package) -> Result<String, LoadError> {
+fn root_part(package: &Package) -> Result<Rc<str>, LoadError> {
     const RELATIONSHIPS: &str = "_rels/.rels";
     const MODEL: &[u8] = b"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
     let path = package.path_of(RELATIONSHIPS);
-    let Ok(bytes) = package.read(&path) else { return Ok(USUAL_PART.to_owned()) };
+    let Ok(bytes) = package.read(&path) else { return Ok(USUAL_PART.into()) };
     let mut reader = Reader::new(&path, &bytes);
     while let Some(element) = reader.next()? {
         let is_relationship = element.is_start() && element.name() == b"Relationship";
@@ -67,30 +69,30 @@ fn root_part(package: &Package) -> Result<String, LoadError> {
             return Ok(part_name(&target));
         }
     }
-    Ok(USUAL_PART.to_owned())
+    Ok(USUAL_PART.into())
 }
 
 /// A part's name in the archive, of a path from its root.
-fn part_name(path: &str) -> String {
-    path.trim_start_matches('/').to_owned()
+fn part_name(path: &str) -> Rc<str> {
+    path.trim_start_matches('/').into()
 }
 
 /// An object, by the part that it is in and its id there.
-type ObjectKey = (String, u32);
+type ObjectKey = (Rc<str>, u32);
 
 /// An object that is used somewhere.
 struct Use {
     object: ObjectKey,
     transform: Transform,
-    /// Where it is used, for what is wrong with it.
-    place: Diagnostic,
+    /// Where it is used, for what is wrong with it: the part, and the byte in it.
+    place: (Rc<str>, usize),
 }
 
 /// A part as far as its objects are not in the loader.
 struct Part {
     items: Vec<Use>,
     /// Further parts that it names.
-    named: Vec<String>,
+    named: Vec<Rc<str>>,
     /// The length of its unit.
     millimetres: f64,
 }
@@ -145,7 +147,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    fn read_part(&mut self, name: &str) -> Result<Part, LoadError> {
+    fn read_part(&mut self, name: &Rc<str>) -> Result<Part, LoadError> {
         let path = self.package.path_of(name);
         let bytes = self.package.read(&path).map_err(|message| LoadError::new(&path, message))?;
         let mut reader = Reader::new(&path, &bytes);
@@ -195,7 +197,7 @@ impl<'a> Loader<'a> {
         while let Some(element) = reader.next_within(outer)? {
             if element.is_start() && element.name() == b"base" {
                 let [r, g, b, alpha] = element.color("displaycolor")?;
-                let name = element.text("name").unwrap_or_default();
+                let name = kept_name(&element.text("name").unwrap_or_default());
                 self.materials.push(plastic(name, Rgb::new(r, g, b), alpha));
                 places.push(self.materials.len() - 1);
             }
@@ -205,7 +207,7 @@ impl<'a> Loader<'a> {
 
     fn object(
         &mut self,
-        part_name: &str,
+        part_name: &Rc<str>,
         element: &Element,
         reader: &mut Reader,
         properties: &HashMap<u32, Properties>,
@@ -213,9 +215,9 @@ impl<'a> Loader<'a> {
     ) -> Result<(), LoadError> {
         let id = element.number("id")?;
         let index = self.nodes.len();
-        let name = element.text("name").unwrap_or_else(|| format!("object {id}"));
+        let name = element.text("name").map_or_else(|| format!("object {id}"), |name| kept_name(&name));
         self.nodes.push(ModelNode { name: name.clone(), ..ModelNode::default() });
-        if self.node_of.insert((part_name.to_owned(), id), index).is_some() {
+        if self.node_of.insert((Rc::clone(part_name), id), index).is_some() {
             return Err(element.fault(format!("there are two objects {id}")).into());
         }
         let is_support = element.attribute("type") == Some(b"support");
@@ -393,12 +395,12 @@ impl<'a> Loader<'a> {
     }
 
     /// Puts the objects together.
-    fn finish(mut self, path: &Path, root: &str, items: Vec<Use>, scale: f64) -> Result<Model, LoadError> {
+    fn finish(mut self, path: &Path, root: &str, items: &[Use], scale: f64) -> Result<Model, LoadError> {
         for (node, component) in std::mem::take(&mut self.uses) {
-            let child = self.add_use(component)?;
+            let child = self.add_use(&component)?;
             self.nodes[node].children.push(child);
         }
-        let children = items.into_iter().map(|item| self.add_use(item)).collect::<Result<Vec<_>, _>>()?;
+        let children = items.iter().map(|item| self.add_use(item)).collect::<Result<Vec<_>, _>>()?;
         let transform = Transform::scale(DVec3::splat(scale));
         self.nodes.push(ModelNode { transform, children, ..ModelNode::default() });
         let top = self.nodes.len() - 1;
@@ -431,12 +433,20 @@ impl<'a> Loader<'a> {
         })
     }
 
+    /// What is wrong at a place, in words that only a reader of the part has: parts are not kept.
+    fn fault_at(&self, (part, offset): &(Rc<str>, usize), message: String) -> LoadError {
+        let path = self.package.path_of(part);
+        match self.package.read(&path) {
+            Ok(bytes) => Reader::new(&path, &bytes).fault_at(*offset, message).into(),
+            Err(_) => LoadError::new(&path, message),
+        }
+    }
+
     /// Adds a node for a use of an object.
-    fn add_use(&mut self, used: Use) -> Result<usize, LoadError> {
+    fn add_use(&mut self, used: &Use) -> Result<usize, LoadError> {
         let Some(&object) = self.node_of.get(&used.object) else {
-            let mut place = used.place;
-            place.message = format!("there is no object {} in `{}`", used.object.1, used.object.0);
-            return Err(place.into());
+            let message = format!("there is no object {} in `{}`", used.object.1, used.object.0);
+            return Err(self.fault_at(&used.place, message));
         };
         self.nodes.push(ModelNode {
             transform: used.transform,
@@ -478,15 +488,16 @@ fn refuse_unknown_extensions(element: &Element) -> Result<(), LoadError> {
 }
 
 /// The object that a component or an item uses, and where it puts it.
-fn use_of(part: &str, element: &Element, named: &mut Vec<String>) -> Result<Use, LoadError> {
+fn use_of(part: &Rc<str>, element: &Element, named: &mut Vec<Rc<str>>) -> Result<Use, LoadError> {
     let id = element.number("objectid")?;
+    let place = (Rc::clone(part), element.offset());
     let part = match element.text_of(Namespace::Production, "path") {
         Some(path) => {
             let name = part_name(&path);
-            named.push(name.clone());
+            named.push(Rc::clone(&name));
             name
         }
-        None => part.to_owned(),
+        None => Rc::clone(part),
     };
     let transform = match element.attribute("transform") {
         Some(_) => {
@@ -495,7 +506,7 @@ fn use_of(part: &str, element: &Element, named: &mut Vec<String>) -> Result<Use,
         }
         None => Transform::IDENTITY,
     };
-    Ok(Use { object: (part, id), transform, place: element.fault("") })
+    Ok(Use { object: (part, id), transform, place })
 }
 
 fn color_group(outer: &Element, reader: &mut Reader) -> Result<Properties, LoadError> {

@@ -75,7 +75,7 @@ impl ModelTree {
             let ModelNode { parts, children, .. } = &nodes[index];
             let below = children.iter().fold(0_u64, |sum, &child| sum.saturating_add(visits[child]));
             let own = parts.len() as u64;
-            visits[index] = if own + below > 0 { below.saturating_add(own + 1) } else { 0 };
+            visits[index] = if own > 0 || below > 0 { below.saturating_add(own + 1) } else { 0 };
         }
         let draws = |index: &usize| visits[*index] > 0;
         let total = roots.iter().fold(0_u64, |sum, &root| sum.saturating_add(visits[root]));
@@ -272,6 +272,13 @@ mod tests {
     #[test]
     fn nodes_that_double_forty_times_are_refused() {
         let mut nodes = (1..41).map(|next| node(&[next, next], &[])).collect::<Vec<_>>();
+        nodes.push(node(&[], &[0]));
+        assert_eq!(ModelTree::grow(nodes, vec![0]).err(), Some(TreeError::TooLarge));
+    }
+
+    #[test]
+    fn nodes_that_double_a_hundred_times_and_draw_something_are_refused() {
+        let mut nodes = (1..101).map(|next| node(&[next, next], &[0])).collect::<Vec<_>>();
         nodes.push(node(&[], &[0]));
         assert_eq!(ModelTree::grow(nodes, vec![0]).err(), Some(TreeError::TooLarge));
     }

@@ -26,6 +26,10 @@ pub(super) struct Triangulator {
     previous: Vec<u32>,
     next: Vec<u32>,
     blunt: Vec<u32>,
+    /// Which corners are known to be no ears.
+    refused: Vec<bool>,
+    /// How many corners have been held against triangles for the polygon at hand.
+    tests: u64,
     triangles: Vec<[u32; 3]>,
     /// The sum of the squares of the corners of those whose ears were clipped.
     work: u64,
@@ -86,15 +90,26 @@ impl Triangulator {
         self.next.extend((0..count).map(|i| (i + 1) % count));
         self.blunt = (0..count).filter(|&i| self.turn_at(i) <= 0.0).collect();
 
-        let (mut corner, mut remaining, mut refused) = (0, count, 0);
+        self.refused.clear();
+        self.refused.resize(count as usize, false);
+        self.tests = 0;
+        let most_tests = TESTS_PER_SQUARE * u64::from(count) * u64::from(count);
+
+        let (mut corner, mut remaining, mut passed) = (0, count, 0);
+        let mut is_second_look = false;
         while remaining > 3 {
-            // Without an ear on the whole way round, the polygon crosses or touches itself: any corner will do.
-            if self.is_ear(corner) || refused >= remaining {
+            // Without an ear on the whole way round, the polygon crosses or touches itself. Then what was refused before
+            // may be an ear by now, and if none is, any corner will do.
+            let is_stuck = passed >= remaining;
+            if is_stuck && !is_second_look && self.tests < most_tests {
+                self.refused.fill(false);
+                (passed, is_second_look) = (0, true);
+            } else if is_stuck || self.is_ear(corner) {
                 corner = self.clip(corner);
-                (remaining, refused) = (remaining - 1, 0);
+                (remaining, passed, is_second_look) = (remaining - 1, 0, false);
             } else {
                 corner = self.next[corner as usize];
-                refused += 1;
+                passed += 1;
             }
         }
         self.triangles.push(self.ear_at(corner));
@@ -114,15 +129,26 @@ impl Triangulator {
     ///
     /// Only blunt corners can lie in it. One on its border counts as in it, lest a corner on a straight edge
     /// be left over.
-    fn is_ear(&self, corner: u32) -> bool {
+    ///
+    /// What was refused stays so until a neighbour is cut off: what lay in its triangle lies there still.
+    fn is_ear(&mut self, corner: u32) -> bool {
+        if self.refused[corner as usize] {
+            return false;
+        }
         let ear = self.ear_at(corner);
         let [a, b, c] = ear.map(|i| self.points[i as usize]);
-        turn(a, b, c) > 0.0
-            && !self.blunt.iter().any(|&other| {
-                let p = self.points[other as usize];
-                let is_corner = p == a || p == b || p == c;
-                !is_corner && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
-            })
+        let is_sharp = turn(a, b, c) > 0.0;
+        let lies_in = |&other: &u32| {
+            let p = self.points[other as usize];
+            let is_corner = p == a || p == b || p == c;
+            !is_corner && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
+        };
+        let first = is_sharp.then(|| self.blunt.iter().position(lies_in));
+        let tested = first.map_or(0, |first| first.map_or(self.blunt.len(), |place| place + 1));
+        self.tests += tested as u64;
+        let is_ear = first == Some(None);
+        self.refused[corner as usize] = !is_ear;
+        is_ear
     }
 
     /// Cuts a corner off. Returns where to go on: two corners further, so that ears are taken all around the
@@ -136,6 +162,8 @@ impl Triangulator {
         // A corner becomes sharper where its neighbour is cut off, never blunter, so none is added.
         blunt.retain(|&i| i != corner && ((i != previous && i != next) || self.turn_at(i) <= 0.0));
         self.blunt = blunt;
+        self.refused[previous as usize] = false;
+        self.refused[next as usize] = false;
         self.next[next as usize]
     }
 }
@@ -151,6 +179,10 @@ fn newell_normal(corners: &[DVec3]) -> DVec3 {
     let pairs = corners.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin));
     pairs.sum()
 }
+
+/// How many times the square of its corners a polygon may need in tests before it is no longer looked at twice. One that
+/// does not cross itself needs less than 2.
+const TESTS_PER_SQUARE: u64 = 4;
 
 #[cfg(test)]
 mod tests {
@@ -204,6 +236,23 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A corridor in zigzag, in which only the two ends ever have ears.
+    #[test]
+    fn the_work_grows_with_the_square_of_the_corners_where_ears_are_few() {
+        let corners = 2000;
+        let line = |up: f64| {
+            (0..corners / 2)
+                .map(move |i| DVec3::new(f64::from(i), if i % 2 == 0 { up } else { up + 10.0 }, 0.0))
+        };
+        let corridor = line(0.0).chain(line(0.5).rev()).collect::<Vec<_>>();
+        let mut triangulator = Triangulator::default();
+        let triangles = triangulator.triangulate(&corridor).unwrap();
+        let expected = 0.5 * f64::from(corners / 2 - 1);
+        assert!((area(&corridor, triangles) - expected).abs() < 1e-6);
+        let square = u64::from(corners as u32) * u64::from(corners as u32);
+        assert!(triangulator.tests < 2 * square, "{} tests", triangulator.tests);
     }
 
     #[test]

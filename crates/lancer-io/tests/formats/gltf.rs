@@ -7,6 +7,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::scene::{Scene, Shape, Texture};
 use lancer_core::world::{CompileOptions, World};
+use lancer_io::limits::Limits;
 use lancer_io::model::{Model, UpAxis};
 use lancer_io::showcase::scene_of_model;
 use proptest::prelude::*;
@@ -802,4 +803,26 @@ proptest! {
             prop_assert!(model.triangle_count() > 0);
         }
     }
+}
+
+#[test]
+fn a_file_that_buffers_name_in_many_ways_is_not_held_many_times() {
+    let bytes = [square_bytes(), vec![0; 5000]].concat();
+    let buffer = |prefix: &str| json!({"uri": format!("{prefix}b.bin"), "byteLength": bytes.len()});
+    let document = with(square(), "/buffers", json!([buffer(""), buffer("./"), buffer("././")]));
+    let document = with(document, "/bufferViews/1/buffer", json!(1));
+    let document = with(document, "/bufferViews/2/buffer", json!(2));
+    let files = Files::new().with("b.bin", &bytes).with("a.gltf", document.to_string());
+    let limits = |file_bytes: usize| Limits { file_bytes: file_bytes as u64, ..Limits::default() };
+    assert_eq!(files.load_within("a.gltf", limits(3 * bytes.len())).unwrap().triangle_count(), 2);
+    let error = error_of(files.load_within("a.gltf", limits(2 * bytes.len())));
+    assert_eq!(error, "a.gltf: /buffers/2/uri: the buffers are longer than 10368 bytes in all");
+}
+
+#[test]
+fn long_names_are_cut_off() {
+    let document = with(square(), "/meshes/0/name", json!("é".repeat(300)));
+    let model = gltf(&document).unwrap();
+    assert_eq!(model.parts[0].name, "é".repeat(255));
+    assert_eq!(model.tree.unwrap().nodes()[0].name, "é".repeat(255));
 }

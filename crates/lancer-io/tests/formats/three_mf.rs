@@ -233,3 +233,45 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_hundred_thousand_items_on_one_line_of_a_part_with_a_long_name_take_no_memory_each() {
+    let name = "n".repeat(60_000);
+    let relationships = format!(
+        "<Relationships><Relationship Target=\"/{name}\" Id=\"r\" \
+         Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"
+    );
+    let count = 100_000;
+    let part = model_part("", &object(1, TRIANGLE), &ITEM.repeat(count));
+    let files = [("_rels/.rels", relationships.as_bytes()), (&name, part.as_bytes())];
+    assert_eq!(load("a.3mf", zip(&files)).unwrap().triangle_count(), count as u64);
+    // A fault at the last is still told with its place.
+    let faulty = part.replace("</build>", "<item objectid=\"2\"/></build>");
+    let error = error_of(load("a.3mf", zip(&[("3D/3dmodel.model", faulty.as_bytes())])));
+    let column = ITEM.len() * count + 1;
+    let place = format!("3dmodel.model:7:{column}: there is no object 2 in `3D/3dmodel.model`");
+    assert!(error.ends_with(&place), "{error}");
+}
+
+#[test]
+fn long_names_are_cut_off() {
+    let named = object(1, TRIANGLE).replace("thing 1", &"é".repeat(300));
+    assert_eq!(three_mf("", &named, ITEM).unwrap().parts[0].name, "é".repeat(255));
+}
+
+#[test]
+fn many_small_bombs_are_one() {
+    let padding = " ".repeat(40 << 20);
+    let component =
+        "<object id=\"1\"><components><component p:path=\"/b.model\" objectid=\"1\"/></components></object>";
+    let root = model_part("", component, ITEM) + &padding;
+    let further = model_part("", &object(1, TRIANGLE), "") + &padding;
+    let whole = zip(&[("3D/3dmodel.model", root.trim_end().as_bytes()), ("b.model", further.as_bytes())]);
+    assert_eq!(load("a.3mf", whole).unwrap().triangle_count(), 1);
+    let bomb = zip(&[("3D/3dmodel.model", root.as_bytes()), ("b.model", further.as_bytes())]);
+    let error = error_of(load("a.3mf", bomb));
+    assert!(
+        error.contains("b.model: unpacks, with the files before it, to more than 67108864 bytes"),
+        "{error}"
+    );
+}

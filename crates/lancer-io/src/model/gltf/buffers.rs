@@ -9,7 +9,7 @@ use crate::resolver::Resolver;
 use base64::Engine;
 use base64::engine::general_purpose::{STANDARD, URL_SAFE};
 use percent_encoding::percent_decode_str;
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -23,6 +23,8 @@ pub(super) struct Buffers<'a> {
     loaded: Vec<OnceCell<Rc<Vec<u8>>>>,
     /// Files that several buffers may name.
     files: RefCell<HashMap<PathBuf, Rc<Vec<u8>>>>,
+    /// What further files may hold, in bytes: one file may be named in many ways.
+    left: Cell<u64>,
 }
 
 /// A part of a buffer.
@@ -40,7 +42,8 @@ impl<'a> Buffers<'a> {
         binary: Option<&'a [u8]>,
     ) -> Self {
         let loaded = document.buffers.iter().map(|_| OnceCell::new()).collect();
-        Self { path, resolver, document, binary, loaded, files: RefCell::default() }
+        let left = Cell::new(resolver.limits.file_bytes);
+        Self { path, resolver, document, binary, loaded, files: RefCell::default(), left }
     }
 
     /// The bytes of all buffers that can be had, each file counted once.
@@ -112,6 +115,11 @@ impl<'a> Buffers<'a> {
             return Ok(Rc::clone(bytes));
         }
         let bytes = self.resolver.read(&path).map_err(|error| Fault::new(at, error.to_string()))?;
+        let Some(left) = self.left.get().checked_sub(bytes.len() as u64) else {
+            let most = self.resolver.limits.file_bytes;
+            return Err(Fault::new(at, format!("the buffers are longer than {most} bytes in all")));
+        };
+        self.left.set(left);
         let bytes = Rc::new(bytes);
         self.files.borrow_mut().insert(path, Rc::clone(&bytes));
         Ok(bytes)

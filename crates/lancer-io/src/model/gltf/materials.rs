@@ -29,6 +29,7 @@
 use super::document::{self, Document, TextureInfo};
 use super::fault::{Fault, Result, Warnings, entry};
 use super::textures::Textures;
+use crate::model::text::kept_name;
 use lancer_core::Rgb;
 use lancer_core::geometry::portable;
 use lancer_core::scene::{ImageTexture, Material, Texture};
@@ -162,7 +163,7 @@ pub(super) fn convert(
     surface.color = clamped(surface.color);
     surface.opacity = opacity(written, &surface, &at, warnings);
     warn_of_the_rest(written, &at, warnings);
-    let name = written.name.clone().unwrap_or_else(|| format!("material {index}"));
+    let name = written.name.as_deref().map(kept_name).unwrap_or_else(|| format!("material {index}"));
     Ok(Converted { material: material(name, written, &surface, ior), mapping })
 }
 

@@ -29,6 +29,7 @@ use self::materials::Converted;
 use self::nodes::Graph;
 use self::primitives::MeshMaker;
 use self::textures::Textures;
+use super::text::kept_name;
 use super::tree::{Grown, ModelNode, ModelTree};
 use super::{Model, ModelOptions, ModelPart, name_of, normals};
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -187,7 +188,7 @@ fn model_nodes(
             );
         }
         let mut node = ModelNode {
-            name: written.name.as_deref().unwrap_or_default().to_owned(),
+            name: kept_name(written.name.as_deref().unwrap_or_default()),
             transform: graph.transforms[index],
             parts: Vec::new(),
             children: written.children.to_vec(),
@@ -236,7 +237,7 @@ struct Parts<'a> {
 
 impl Parts<'_> {
     fn mesh_name(&self, index: usize) -> String {
-        let name = self.document.meshes.get(index).and_then(|mesh| mesh.name.clone());
+        let name = self.document.meshes.get(index).and_then(|mesh| mesh.name.as_deref()).map(kept_name);
         name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("mesh {index}"))
     }
 

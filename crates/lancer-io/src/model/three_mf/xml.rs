@@ -70,6 +70,11 @@ impl<'a> Reader<'a> {
         self.source.path.to_owned()
     }
 
+    /// What is wrong at an [offset](Element::offset).
+    pub(super) fn fault_at(&self, offset: usize, message: impl Into<String>) -> Diagnostic {
+        self.source.diagnostic(offset, message)
+    }
+
     /// The next start or end of an element; `None` at the end of the part.
     pub(super) fn next(&mut self) -> Result<Option<Element<'a>>, LoadError> {
         loop {
@@ -122,6 +127,11 @@ fn prefixes_of(root: &BytesStart) -> HashMap<Vec<u8>, Vec<u8>> {
 }
 
 impl Element<'_> {
+    /// Where it begins in the part.
+    pub(super) fn offset(&self) -> usize {
+        self.offset
+    }
+
     pub(super) fn is_start(&self) -> bool {
         self.tag != Tag::End
     }
