@@ -732,8 +732,7 @@ fn files_outside_are_not_opened() {
         let document = with(square(), "/buffers/0/uri", json!(uri));
         let files = files.path("b.gltf");
         std::fs::write(&files, document.to_string()).unwrap();
-        let resolver =
-            lancer_io::resolver::Resolver::for_file(&files, false, lancer_io::limits::Limits::default());
+        let resolver = lancer_io::resolver::Resolver::for_file(&files, false, Limits::default());
         let error = lancer_io::model::load(&files, &resolver, &Default::default()).unwrap_err().to_string();
         assert!(error.contains("/buffers/0/uri: ") && error.contains("outside of"), "{error}");
     }
