@@ -50,8 +50,8 @@ pub(crate) enum Narrowed {
 /// Sizes of coordinates for which no product of a kernel leaves the range of `f32`.
 const SIZES: std::ops::Range<f64> = 1e-9..1e9;
 
-/// A component of a direction below this is as good as zero: along the ray, within bounds that are at most 4
-/// times [`SIZES`] apart relative to their size, it moves by less than the slack of the slab test.
+/// A component of a direction below this is taken for it, so that its inverse is finite: the slab test makes room for
+/// how far that moves the ray. Larger would let rays be tried that pass by; smaller would leave the range of `f32`.
 pub(super) const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl NarrowRay {
@@ -68,7 +68,9 @@ impl NarrowRay {
         }
         // All rounding in f64, here and in the canonical test, is below this.
         let slack = (distance + size) * (256.0 * f64::EPSILON);
-        let Some((enter, leave)) = slab(ray.origin, direction, bounds, slack) else {
+        // A component that is taken for more than it is moves the ray by no more than this.
+        let moved = (distance + size) * LEAST_COMPONENT;
+        let Some((enter, leave)) = slab(ray.origin, direction, bounds, slack + moved) else {
             return Narrowed::Misses;
         };
         let last = ray.t_max * length;

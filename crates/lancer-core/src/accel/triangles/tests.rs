@@ -120,6 +120,24 @@ fn nearest_and_any_hit_are_those_of_the_canonical_test_on_every_triangle() {
 }
 
 #[test]
+fn a_ray_along_an_axis_just_inside_of_the_bounds_hits() {
+    let mesh = Mesh::new(grid(1)).unwrap();
+    for level in levels() {
+        let tree = build(&mesh, level);
+        for (distance, inside) in [(0.1, 1e-15), (1.0, 1e-15), (5.0, 1e-13), (1e3, 1e-13), (1e5, 1e-13)] {
+            for edge in [0.5 - inside, inside - 0.5] {
+                let ray = Ray::new(DVec3::new(edge, distance, 0.1), DVec3::NEG_Y);
+                let hit = tree.intersect(&ray, &Uncounted).map(|hit| hit.t);
+                assert!(
+                    hit.is_some_and(|t| (t - distance).abs() < 1e-12 * distance),
+                    "{level:?} {ray:?}: {hit:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn most_rays_are_settled_without_the_canonical_test() {
     // Not a matter of right or wrong, but of all the speed: a bound that is far too loose would pass every other
     // test. Counted at a ball of 20,000 triangles seen from outside.
