@@ -212,6 +212,7 @@ mod tests {
     fn limits_hold_for_files_in_memory() {
         let resolver = in_memory(&["model.obj"], Limits { file_bytes: 8, ..Limits::default() });
         let error = resolver.read(Path::new("model.obj")).unwrap_err();
-        assert_eq!(error.to_string(), "model.obj: is longer than 8 bytes");
+        let message = "model.obj: is longer than 8 bytes\nhint: --limit file-bytes=N allows longer ones";
+        assert_eq!(error.to_string(), message);
     }
 }

@@ -805,17 +805,24 @@ proptest! {
 }
 
 #[test]
-fn a_file_that_buffers_name_in_many_ways_is_not_held_many_times() {
+fn buffers_are_bounded_in_all_and_a_file_of_several_is_held_once() {
     let bytes = [square_bytes(), vec![0; 5000]].concat();
-    let buffer = |prefix: &str| json!({"uri": format!("{prefix}b.bin"), "byteLength": bytes.len()});
-    let document = with(square(), "/buffers", json!([buffer(""), buffer("./"), buffer("././")]));
-    let document = with(document, "/bufferViews/1/buffer", json!(1));
-    let document = with(document, "/bufferViews/2/buffer", json!(2));
-    let files = Files::new().with("b.bin", &bytes).with("a.gltf", document.to_string());
-    let limits = |file_bytes: usize| Limits { file_bytes: file_bytes as u64, ..Limits::default() };
-    assert_eq!(files.load_within("a.gltf", limits(3 * bytes.len())).unwrap().triangle_count(), 2);
-    let error = error_of(files.load_within("a.gltf", limits(2 * bytes.len())));
-    assert_eq!(error, "a.gltf: /buffers/2/uri: the buffers are longer than 10368 bytes in all");
+    let buffer = |uri: &str| json!({"uri": uri, "byteLength": bytes.len()});
+    let load = |uris: [&str; 3], file_bytes: usize| {
+        let document = with(square(), "/buffers", json!(uris.map(buffer)));
+        let document = with(document, "/bufferViews/1/buffer", json!(1));
+        let document = with(document, "/bufferViews/2/buffer", json!(2)).to_string();
+        let files =
+            ["b.bin", "c.bin", "d.bin"].iter().fold(Files::new(), |files, name| files.with(name, &bytes));
+        let limits = Limits { file_bytes: file_bytes as u64, ..Limits::default() };
+        files.with("a.gltf", document).load_within("a.gltf", limits)
+    };
+    let three = ["b.bin", "c.bin", "d.bin"];
+    assert_eq!(load(three, 3 * bytes.len()).unwrap().triangle_count(), 2);
+    assert_eq!(load(["b.bin", "./b.bin", "././b.bin"], bytes.len()).unwrap().triangle_count(), 2);
+    let most = 2 * bytes.len();
+    let error = error_of(load(three, most));
+    assert_eq!(error, format!("a.gltf: /buffers/2/uri: the buffers are longer than {most} bytes in all"));
 }
 
 #[test]
