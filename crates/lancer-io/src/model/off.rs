@@ -213,9 +213,8 @@ impl<'a> Parser<'a> {
             };
             self.face(header, count);
             self.cursor.skip_line();
-            if self.polygons.triangles() > self.limits.triangles || !self.polygons.is_indexable() {
-                let most = self.limits.triangles;
-                return Err(self.fault(count, format!("from here on there are more than {most} triangles")));
+            if let Some(excess) = self.polygons.excess(&self.limits) {
+                return Err(self.fault(count, format!("from here on {excess}")));
             }
         }
         Ok(())

@@ -226,10 +226,8 @@ impl<'a> TextParser<'a> {
                     self.cursor.skip_line();
                 }
             }
-            let polygons = &self.vertices.polygons;
-            if polygons.triangles() > self.limits.triangles || !polygons.is_indexable() {
-                let most = self.limits.triangles;
-                self.error(word, format!("from here on there are more than {most} triangles"));
+            if let Some(excess) = self.vertices.polygons.excess(&self.limits) {
+                self.error(word, format!("from here on {excess}"));
                 break;
             }
         }
