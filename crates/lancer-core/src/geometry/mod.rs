@@ -6,6 +6,7 @@
 mod bounds;
 pub mod error;
 mod fan;
+mod packet;
 pub mod portable;
 mod ray;
 mod transform;
@@ -13,5 +14,6 @@ mod transform;
 pub use bounds::Bounds;
 pub use fan::DirectionFan;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
+pub use packet::RayPacket;
 pub use ray::Ray;
 pub use transform::{Placement, SingularTransform, Transform};

@@ -1,7 +1,7 @@
 //! Affine transforms, as authored and as prepared for tracing.
 
 use super::error::gamma;
-use super::{Bounds, DAffine3, DMat3, DVec3, Ray, portable};
+use super::{Bounds, DAffine3, DMat3, DVec3, Ray, RayPacket, portable};
 
 /// An affine map from an object's space to its parent's.
 ///
@@ -157,12 +157,22 @@ impl Placement {
     }
 
     /// The ray in the object's space. Its direction keeps its length, so t means the same in both spaces.
+    #[inline(always)]
     pub fn ray_to_object(&self, ray: &Ray) -> Ray {
         Ray {
             origin: self.object_from_world * (ray.origin - self.translation),
             direction: self.object_from_world * ray.direction,
             t_max: ray.t_max,
         }
+    }
+
+    /// The rays in the object's space, each as [`Placement::ray_to_object`] would carry it there.
+    pub fn rays_to_object(&self, rays: &RayPacket) -> RayPacket {
+        let mut local = rays.clone();
+        for lane in 0..RayPacket::LANES {
+            local.set(lane, &self.ray_to_object(&rays.ray(lane)));
+        }
+        local
     }
 
     /// The image in the world of a point of the object.

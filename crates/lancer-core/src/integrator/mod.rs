@@ -11,7 +11,7 @@ mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusionSampler;
 pub use listener::{Listener, RayId, RayKind, Silent, SpawnEvent};
-pub use whitted::{Scratch, Whitted};
+pub use whitted::{CameraRays, Scratch, Whitted};
 
 /// Rays traced, by kind, and what was cut short.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,15 +6,17 @@
 //!
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
-use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, SpawnEvent};
+use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
+use crate::accel::triangles::bits;
 use crate::accel::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::color::Rgb;
-use crate::geometry::{DVec3, Ray};
+use crate::geometry::{DVec3, Ray, RayPacket};
 use crate::sampling::{Branch, Key};
-use crate::scene::{Light, Material, Settings};
+use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Intersection, Media, Touching, World};
+use crate::world::{Hit, Intersection, Media, Touching, World};
+use arrayvec::ArrayVec;
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -29,15 +31,33 @@ pub struct Whitted<'w> {
     cancel: CancelToken,
 }
 
-/// Memory that one camera ray leaves to the next.
+/// Memory that camera rays leave to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    pending: VecDeque<PendingRay>,
+    /// For each camera ray of a packet.
+    pending: [VecDeque<PendingRay>; LANES],
+    light: Light,
+}
+
+const LANES: usize = RayPacket::LANES;
+
+/// What the lights do at the surfaces that rays have met: for each surface in turn, by light.
+#[derive(Clone, Debug, Default)]
+struct Light {
+    terms: Vec<Option<LightTerm>>,
+    /// For each light the surfaces that it reaches, a bit for each.
+    visible: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
 struct PendingRay {
     ray: Ray,
+    path: Path,
+}
+
+/// What a ray brings along.
+#[derive(Clone, Debug)]
+struct Path {
     kind: RayKind,
     throughput: Rgb,
     /// How many reflections and refractions may follow.
@@ -101,24 +121,45 @@ impl<'w> Whitted<'w> {
         listener: &mut L,
         tally: &T,
     ) -> Rgb {
-        let pending = &mut scratch.pending;
-        let mut walk = Walk { integrator: self, pending, counts, listener, tally, next_id: 1 };
-        let first = PendingRay {
-            ray,
-            kind: RayKind::Primary,
-            throughput: Rgb::WHITE,
-            depth: self.depth,
-            key,
-            media: media.clone(),
-        };
-        let radiance = walk.run(first);
-        // In the precision of a pixel, which holds less than this one does.
-        if radiance.map(|channel| f64::from(channel as f32)).is_finite() {
-            radiance
-        } else {
-            counts.replaced += 1;
-            Rgb::BLACK
+        let mut rays = CameraRays::default();
+        rays.push(&ray, key);
+        let listeners = std::slice::from_mut(listener);
+        self.trace(&rays, media, scratch, counts, listeners, tally)[0]
+    }
+
+    /// The radiances that arrive along camera rays from one place, each as [`Whitted::radiance`] finds it: sooner
+    /// where they go much the same way, since they are traced together.
+    pub fn radiances(
+        &self,
+        rays: &CameraRays,
+        media: &Media,
+        scratch: &mut Scratch,
+        counts: &mut RayCounts,
+    ) -> [Rgb; RayPacket::LANES] {
+        self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted)
+    }
+
+    fn trace<L: Listener, T: Tally>(
+        &self,
+        rays: &CameraRays,
+        media: &Media,
+        scratch: &mut Scratch,
+        counts: &mut RayCounts,
+        listeners: &mut [L],
+        tally: &T,
+    ) -> [Rgb; LANES] {
+        let Scratch { pending, light } = scratch;
+        let mut walk =
+            Walk { integrator: self, pending, light, counts, listeners, tally, next_id: [1; LANES] };
+        let mut radiances = walk.run(rays, media);
+        for radiance in &mut radiances {
+            // In the precision of a pixel, which holds less than this one does.
+            if !radiance.map(|channel| f64::from(channel as f32)).is_finite() {
+                counts.replaced += 1;
+                *radiance = Rgb::BLACK;
+            }
         }
+        radiances
     }
 
     /// c_a at the surface that a camera ray meets; 1 where it meets none.
@@ -132,26 +173,118 @@ impl<'w> Whitted<'w> {
         })
     }
 
+    /// c_a for camera rays, each as [`Whitted::occlusion`] finds it.
+    pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
+        counts.primary += rays.count as u64;
+        let hits = self.intersect(&rays.packet, rays.lanes(), &Uncounted);
+        let mut occlusions = [1.0; LANES];
+        for (lane, hit) in hits.iter().enumerate() {
+            if let Some(hit) = hit {
+                let (at, _) = self.world.seen_surface(&rays.packet.ray(lane), hit, &Uncounted);
+                occlusions[lane] = self.occlusion_at(&at, rays.keys[lane], counts);
+            }
+        }
+        occlusions
+    }
+
+    /// What each of the rays `wanted` hits.
+    fn intersect(&self, rays: &RayPacket, wanted: u32, tally: &impl Tally) -> [Option<Hit>; LANES] {
+        if wanted.count_ones() >= WORTH_A_PACKET {
+            return self.world.intersect_packet(rays, wanted);
+        }
+        let mut hits = [None; LANES];
+        for lane in bits(wanted) {
+            hits[lane] = self.world.intersect_tallied(&rays.ray(lane), tally);
+        }
+        hits
+    }
+
+    /// Which of the rays `wanted` meet anything.
+    fn occluded(&self, rays: &RayPacket, wanted: u32, tally: &impl Tally) -> u32 {
+        if wanted.count_ones() >= WORTH_A_PACKET {
+            return self.world.occluded_packet(rays, wanted);
+        }
+        bits(wanted)
+            .filter(|&lane| self.world.occluded_tallied(&rays.ray(lane), tally))
+            .fold(0, |occluded, lane| occluded | 1 << lane)
+    }
+
     /// c_a at a surface, by the key of the ray that met it.
     pub fn occlusion_at(&self, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
         self.occlusion.factor(self.world, at, key, counts)
     }
 }
 
-/// One camera ray's tree on its way.
+/// Up to sixteen camera rays, and the keys of their random numbers.
+#[derive(Clone, Debug)]
+pub struct CameraRays {
+    packet: RayPacket,
+    keys: [Key; LANES],
+    count: usize,
+}
+
+impl CameraRays {
+    /// Adds a ray.
+    ///
+    /// # Panics
+    /// Where there are [`RayPacket::LANES`] already.
+    #[inline]
+    pub fn push(&mut self, ray: &Ray, key: Key) {
+        self.packet.set(self.count, ray);
+        self.keys[self.count] = key;
+        self.count += 1;
+    }
+
+    /// Forgets all rays.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The rays, in the order in which they were added.
+    pub fn iter(&self) -> impl Iterator<Item = (Ray, Key)> {
+        (0..self.count).map(|lane| (self.packet.ray(lane), self.keys[lane]))
+    }
+
+    /// A bit for each.
+    fn lanes(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+}
+
+impl Default for CameraRays {
+    fn default() -> Self {
+        let packet = RayPacket::splat(&Ray::new(DVec3::ZERO, DVec3::ONE));
+        Self { packet, keys: [Key::camera(0, 0, 0); LANES], count: 0 }
+    }
+}
+
+/// So many rays are traced together; fewer go one by one.
+const WORTH_A_PACKET: u32 = 4;
+
+/// The trees of camera rays on their way, in step: the next ray of each is traced together.
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
-    pending: &'a mut VecDeque<PendingRay>,
+    pending: &'a mut [VecDeque<PendingRay>; LANES],
+    light: &'a mut Light,
     counts: &'a mut RayCounts,
-    listener: &'a mut L,
+    listeners: &'a mut [L],
     tally: &'a T,
-    next_id: u32,
+    /// By camera ray; all ids below it are given.
+    next_id: [u32; LANES],
 }
 
 /// A surface that a ray has met, ready for its terms.
 struct Arrival<'a> {
+    /// Which camera ray it comes from.
+    lane: usize,
     id: RayId,
-    pending: &'a PendingRay,
+    path: &'a Path,
+    ray: Ray,
     at: Intersection,
     /// Other dielectrics whose surfaces coincide with this one.
     touching: Vec<Touching>,
@@ -159,22 +292,33 @@ struct Arrival<'a> {
 }
 
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
-    fn run(&mut self, first: PendingRay) -> Rgb {
-        self.pending.clear();
-        let mut radiance = Rgb::BLACK;
-        let mut id = 0;
-        let mut next = Some(first);
-        while let Some(pending) = next {
-            if self.integrator.cancel.is_cancelled() {
+    fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
+        let mut radiances = [Rgb::BLACK; LANES];
+        let mut rays = first.packet.clone();
+        let mut paths = first.keys.map(|key| Path {
+            kind: RayKind::Primary,
+            throughput: Rgb::WHITE,
+            depth: self.integrator.depth,
+            key,
+            media: media.clone(),
+        });
+        let mut wanted = first.lanes();
+        for id in 0.. {
+            if wanted == 0 || self.integrator.cancel.is_cancelled() {
                 break;
             }
-            self.count(pending.kind);
-            self.listener.begin_ray(RayId(id), pending.kind, pending.throughput, &pending.ray);
-            radiance += self.trace(RayId(id), &pending) * pending.throughput;
-            id += 1;
-            next = self.pending.pop_front();
+            self.step(RayId(id), &rays, wanted, &paths, &mut radiances);
+            wanted = 0;
+            for (lane, pending) in self.pending.iter_mut().enumerate() {
+                if let Some(PendingRay { ray, path }) = pending.pop_front() {
+                    rays.set(lane, &ray);
+                    paths[lane] = path;
+                    wanted |= 1 << lane;
+                }
+            }
         }
-        radiance
+        self.pending.iter_mut().for_each(VecDeque::clear);
+        radiances
     }
 
     fn count(&mut self, kind: RayKind) {
@@ -185,29 +329,49 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
     }
 
-    /// The local terms of one ray; what it reflects and refracts is queued.
-    fn trace(&mut self, id: RayId, pending: &PendingRay) -> Rgb {
+    /// The local terms of one ray of each tree; what they reflect and refract is queued.
+    fn step(
+        &mut self,
+        id: RayId,
+        rays: &RayPacket,
+        wanted: u32,
+        paths: &[Path; LANES],
+        radiances: &mut [Rgb; LANES],
+    ) {
         let world = self.integrator.world;
-        let Some(hit) = world.intersect_tallied(&pending.ray, self.tally) else {
-            self.listener.background(world.background());
-            return world.background();
-        };
-        let (at, touching) = world.seen_surface(&pending.ray, &hit, self.tally);
-        let material = world.material(at.material);
-        let point = ShadingPoint {
-            position: at.point,
-            normal: at.facing_normal(),
-            to_eye: -pending.ray.direction,
-            color: material.color.color_at(at.uv) * at.vertex_color,
-            material,
-        };
-        self.listener.surface(&at, point.color);
-        let arrival = Arrival { id, pending, at, touching, point };
-        let radiance = self.ambient(&arrival) + self.lights(&arrival);
-        if pending.depth > 0 {
-            self.continue_paths(&arrival);
+        let hits = self.integrator.intersect(rays, wanted, self.tally);
+        let mut arrivals = ArrayVec::<Arrival, LANES>::new();
+        for lane in bits(wanted) {
+            let (path, ray) = (&paths[lane], rays.ray(lane));
+            self.count(path.kind);
+            let Some(hit) = &hits[lane] else {
+                self.listeners[lane].begin_ray(id, path.kind, path.throughput, &ray);
+                self.listeners[lane].background(world.background());
+                radiances[lane] += world.background() * path.throughput;
+                continue;
+            };
+            let (at, touching) = world.seen_surface(&ray, hit, self.tally);
+            let material = world.material(at.material);
+            let point = ShadingPoint {
+                position: at.point,
+                normal: at.facing_normal(),
+                to_eye: -ray.direction,
+                color: material.color.color_at(at.uv) * at.vertex_color,
+                material,
+            };
+            arrivals.push(Arrival { lane, id, path, ray, at, touching, point });
         }
-        radiance
+        self.find_light(&arrivals);
+        for (index, arrival) in arrivals.iter().enumerate() {
+            let &Arrival { lane, path, .. } = arrival;
+            self.listeners[lane].begin_ray(id, path.kind, path.throughput, &arrival.ray);
+            self.listeners[lane].surface(&arrival.at, arrival.point.color);
+            let radiance = self.ambient(arrival) + self.lights(index, arrival);
+            radiances[lane] += radiance * path.throughput;
+            if path.depth > 0 {
+                self.continue_paths(arrival);
+            }
+        }
     }
 
     /// c_a L_a k_a S.
@@ -222,32 +386,55 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         if term.radiance().is_black() {
             return Rgb::BLACK;
         }
-        let (world, key) = (self.integrator.world, arrival.pending.key);
+        let (world, key) = (self.integrator.world, arrival.path.key);
         let sampler = &self.integrator.occlusion;
         term.occlusion = sampler.factor_tallied(world, &arrival.at, key, self.counts, self.tally);
-        self.listener.ambient(&term);
+        self.listeners[arrival.lane].ambient(&term);
         term.radiance()
     }
 
+    /// Finds what each light does at each surface, and whether it reaches it.
+    fn find_light(&mut self, arrivals: &[Arrival]) {
+        let integrator = self.integrator;
+        let lights = integrator.world.lights();
+        self.light.terms.clear();
+        for arrival in arrivals {
+            self.light.terms.extend(lights.iter().map(|light| LightTerm::new(&arrival.point, light)));
+        }
+        self.light.visible.clear();
+        self.light.visible.resize(lights.len(), u32::MAX);
+        if !integrator.shadows || arrivals.is_empty() {
+            return;
+        }
+        let mut segments = RayPacket::splat(&arrivals[0].ray);
+        for (place, light) in lights.iter().enumerate() {
+            let mut wanted = 0;
+            for (index, arrival) in arrivals.iter().enumerate() {
+                if self.light.terms[index * lights.len() + place].is_some() {
+                    segments.set(index, &arrival.at.segment_to(light.position));
+                    wanted |= 1 << index;
+                }
+            }
+            self.counts.shadow += u64::from(u32::count_ones(wanted));
+            self.light.visible[place] = !integrator.occluded(&segments, wanted, self.tally);
+        }
+    }
+
     /// The sum over the lights, in their order.
-    fn lights(&mut self, arrival: &Arrival) -> Rgb {
-        let world = self.integrator.world;
+    fn lights(&mut self, index: usize, arrival: &Arrival) -> Rgb {
+        let lights = self.integrator.world.lights();
+        let terms = &self.light.terms[index * lights.len()..];
         let mut radiance = Rgb::BLACK;
-        for (index, light) in world.lights().iter().enumerate() {
-            let Some(term) = LightTerm::new(&arrival.point, light) else { continue };
-            let visible = !self.integrator.shadows || self.reaches(&arrival.at, light);
-            self.listener.light(index, light, &term, visible);
+        for (place, ((light, term), visible)) in lights.iter().zip(terms).zip(&self.light.visible).enumerate()
+        {
+            let Some(term) = term else { continue };
+            let visible = visible >> index & 1 == 1;
+            self.listeners[arrival.lane].light(place, light, term, visible);
             if visible {
                 radiance += term.radiance();
             }
         }
         radiance
-    }
-
-    /// Whether nothing stands between a surface and a light.
-    fn reaches(&mut self, at: &Intersection, light: &Light) -> bool {
-        self.counts.shadow += 1;
-        !self.integrator.world.occluded_tallied(&at.segment_to(light.position), self.tally)
     }
 
     /// Queues L_r and L_t where they are wanted and their coefficients are not zero.
@@ -260,15 +447,15 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         let bend = Bend::new(self.integrator.world, arrival);
         let (reflect, transmit) = bend.weights(material);
-        let mirrored = mirror_direction(&arrival.at, arrival.pending.ray.direction);
+        let mirrored = mirror_direction(&arrival.at, arrival.ray.direction);
         if wants_reflection && !reflect.is_black() {
-            let media = arrival.pending.media.clone();
+            let media = arrival.path.media.clone();
             self.spawn(arrival, &bend, Branch::Reflection, RayKind::Reflection, reflect, mirrored, media);
         }
         if wants_refraction && !transmit.is_black() {
             let (kind, direction, media) = match bend.refracted {
                 Some(direction) => (RayKind::Refraction, direction, bend.media_after.clone()),
-                None => (RayKind::TotalInternalReflection, mirrored, arrival.pending.media.clone()),
+                None => (RayKind::TotalInternalReflection, mirrored, arrival.path.media.clone()),
             };
             self.spawn(arrival, &bend, Branch::Transmission, kind, transmit, direction, media);
         }
@@ -285,35 +472,37 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         direction: DVec3,
         media: Media,
     ) {
-        let throughput = arrival.pending.throughput * coefficient;
+        let throughput = arrival.path.throughput * coefficient;
         if throughput.max_channel() < LEAST_THROUGHPUT {
             return;
         }
-        if self.next_id >= Whitted::MAX_RAYS {
+        let lane = arrival.lane;
+        let next_id = &mut self.next_id[lane];
+        if *next_id >= Whitted::MAX_RAYS {
             // Counted once for each camera ray.
-            self.counts.truncated += u64::from(self.next_id == Whitted::MAX_RAYS);
-            self.next_id = Whitted::MAX_RAYS + 1;
+            self.counts.truncated += u64::from(*next_id == Whitted::MAX_RAYS);
+            *next_id = Whitted::MAX_RAYS + 1;
             return;
         }
         let ray = arrival.at.spawn(direction);
-        self.listener.spawn(&SpawnEvent {
+        self.listeners[lane].spawn(&SpawnEvent {
             parent: arrival.id,
-            child: RayId(self.next_id),
+            child: RayId(*next_id),
             kind,
             coefficient,
             ior_before: bend.ior_before,
             ior_after: bend.ior_after,
             ray: &ray,
         });
-        self.next_id += 1;
-        self.pending.push_back(PendingRay {
-            ray,
+        *next_id += 1;
+        let path = Path {
             kind,
             throughput,
-            depth: arrival.pending.depth - 1,
-            key: arrival.pending.key.child(branch),
+            depth: arrival.path.depth - 1,
+            key: arrival.path.key.child(branch),
             media,
-        });
+        };
+        self.pending[lane].push_back(PendingRay { ray, path });
     }
 }
 
@@ -329,8 +518,8 @@ struct Bend {
 
 impl Bend {
     fn new(world: &World, arrival: &Arrival) -> Self {
-        let (at, media) = (&arrival.at, &arrival.pending.media);
-        let direction = arrival.pending.ray.direction;
+        let (at, media) = (&arrival.at, &arrival.path.media);
+        let direction = arrival.ray.direction;
         let cosine = -direction.dot(arrival.point.normal);
         if arrival.point.material.transmit.is_black() {
             let (ior_before, ior_after) = (media.ior(world), arrival.point.material.ior);

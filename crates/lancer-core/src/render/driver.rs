@@ -4,11 +4,12 @@ use super::{Control, Tile};
 use crate::camera::{Camera, CameraError, Projection};
 use crate::color::Rgb;
 use crate::film::Image;
-use crate::geometry::Ray;
-use crate::integrator::{RayCounts, Scratch, Silent, Whitted};
+use crate::geometry::RayPacket;
+use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
 use crate::sampling::{Key, subpixel_centers};
 use crate::scene::{Settings, SettingsError};
 use crate::world::{Media, World};
+use arrayvec::ArrayVec;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -78,13 +79,12 @@ pub enum RenderError {
     Cancelled,
     /// A thread panicked: a bug of this renderer.
     #[error(
-        "a bug in the renderer at pixel {x},{y}: {message}; render that pixel alone with --region {x},{y},1,1 to repeat it"
+        "a bug in the renderer: {message}; render those pixels alone with --region {},{},{},{} to repeat it",
+        .region.x, .region.y, .region.width, .region.height
     )]
     Panicked {
-        /// The pixel's column.
-        x: u32,
-        /// The pixel's row.
-        y: u32,
+        /// The pixels that were painted.
+        region: Region,
         /// What the panic said.
         message: String,
     },
@@ -107,8 +107,8 @@ pub fn render(
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
     let media = Media::around(world, camera.eye);
-    frame.render(control, &|ray: Ray, key: Key, scratch: &mut Scratch, counts: &mut RayCounts| {
-        integrator.radiance(ray, &media, key, scratch, counts, &mut Silent)
+    frame.render(control, &|rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts| {
+        integrator.radiances(rays, &media, scratch, counts)
     })
 }
 
@@ -126,8 +126,8 @@ pub fn render_occlusion(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    frame.render(control, &|ray: Ray, key: Key, _: &mut Scratch, counts: &mut RayCounts| {
-        Rgb::grey(integrator.occlusion(&ray, key, counts))
+    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts| {
+        integrator.occlusions(rays, counts).map(Rgb::grey)
     })
 }
 
@@ -185,25 +185,44 @@ pub(super) trait Painter: Sync {
     /// Before the first ray of a tile.
     fn begin_tile(&self) -> Self::Tile;
 
-    /// What a camera ray yields; something unfinished once the render is cancelled.
-    fn trace(&self, ray: Ray, key: Key, tile: &mut Self::Tile, counts: &mut RayCounts) -> Rgb;
+    /// Pixels are painted together in squares of so many by so many, at most [`BLOCK`]. Of 1, they come one by one, in
+    /// reading order.
+    const SIDE: u32;
 
-    /// All rays of the pixel at a column and a row of the image were traced. Pixels of a tile come in reading order.
+    /// What camera rays yield, one of each pixel of a square; something unfinished once the render is cancelled.
+    fn trace(
+        &self,
+        rays: &CameraRays,
+        tile: &mut Self::Tile,
+        counts: &mut RayCounts,
+    ) -> [Rgb; RayPacket::LANES];
+
+    /// All rays of the pixel at a column and a row of the image were traced.
     fn end_pixel(&self, _x: u32, _y: u32, _mean: [f32; 3], _tile: &mut Self::Tile) {}
 
     /// All pixels of a tile, at its place in the region, are done.
     fn end_tile(&self, _area: &Region, _tile: Self::Tile) {}
 }
 
-impl<F: Fn(Ray, Key, &mut Scratch, &mut RayCounts) -> Rgb + Sync> Painter for F {
+/// The side of the square of pixels whose rays fill a packet.
+pub(super) const BLOCK: u32 = 4;
+
+impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts) -> [Rgb; RayPacket::LANES] + Sync> Painter for F {
     type Tile = Scratch;
 
     fn begin_tile(&self) -> Scratch {
         Scratch::default()
     }
 
-    fn trace(&self, ray: Ray, key: Key, scratch: &mut Scratch, counts: &mut RayCounts) -> Rgb {
-        self(ray, key, scratch, counts)
+    const SIDE: u32 = BLOCK;
+
+    fn trace(
+        &self,
+        rays: &CameraRays,
+        scratch: &mut Scratch,
+        counts: &mut RayCounts,
+    ) -> [Rgb; RayPacket::LANES] {
+        self(rays, scratch, counts)
     }
 }
 
@@ -232,20 +251,25 @@ impl<P: Painter> Job<'_, P> {
     fn tile(&self, area: Region) -> Option<RayCounts> {
         let mut counts = RayCounts::default();
         let mut kept = self.painter.begin_tile();
-        let mut pixels = Vec::with_capacity(area.width as usize * area.height as usize);
-        for y in area.y..area.y + area.height {
-            for x in area.x..area.x + area.width {
-                let (x, y) = (x + self.frame.region.x, y + self.frame.region.y);
-                // After a panic what is kept and the counts are dropped with the tile.
-                let pixel = catch_unwind(AssertUnwindSafe(|| self.pixel(x, y, &mut kept, &mut counts)));
-                match pixel {
-                    Ok(pixel) => pixels.push(pixel?),
-                    Err(panic) => {
-                        let message = panic_message(panic.as_ref()).to_owned();
-                        // A second thread's panic is the same news.
-                        let _ = self.panic.set(RenderError::Panicked { x, y, message });
-                        return None;
+        let mut pixels = vec![[0.0; 3]; area.width as usize * area.height as usize];
+        for block in tiles_of(&area, P::SIDE) {
+            let place = Region { x: area.x + block.x, y: area.y + block.y, ..block };
+            // After a panic what is kept and the counts are dropped with the tile.
+            let means = catch_unwind(AssertUnwindSafe(|| self.block(&place, &mut kept, &mut counts)));
+            match means {
+                Ok(means) => {
+                    let means = means?;
+                    for (row, means) in means.chunks(block.width as usize).enumerate() {
+                        let start = (block.y as usize + row) * area.width as usize + block.x as usize;
+                        pixels[start..start + means.len()].copy_from_slice(means);
                     }
+                }
+                Err(panic) => {
+                    let message = panic_message(panic.as_ref()).to_owned();
+                    let region = self.in_image(&place);
+                    // A second thread's panic is the same news.
+                    let _ = self.panic.set(RenderError::Panicked { region, message });
+                    return None;
                 }
             }
         }
@@ -258,22 +282,45 @@ impl<P: Painter> Job<'_, P> {
         Some(counts)
     }
 
-    /// The mean of the pixel's subpixels; none where the render is to stop.
-    fn pixel(&self, x: u32, y: u32, kept: &mut P::Tile, counts: &mut RayCounts) -> Option<[f32; 3]> {
+    /// A part of the region, in coordinates of the image.
+    fn in_image(&self, place: &Region) -> Region {
+        Region { x: place.x + self.frame.region.x, y: place.y + self.frame.region.y, ..*place }
+    }
+
+    /// The pixels of a square of the region, in reading order; none once the render is cancelled.
+    fn block(
+        &self,
+        place: &Region,
+        kept: &mut P::Tile,
+        counts: &mut RayCounts,
+    ) -> Option<ArrayVec<[f32; 3], { RayPacket::LANES }>> {
         let Frame { projection, samples, .. } = &self.frame;
-        let mut sum = Rgb::BLACK;
+        let Region { x, y, width, height } = self.in_image(place);
+        let pixels = || (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
+        let mut sums = [Rgb::BLACK; RayPacket::LANES];
+        let mut rays = CameraRays::default();
         for (subpixel, (dx, dy)) in subpixel_centers(*samples).enumerate() {
-            let ray = projection.ray(f64::from(x) + dx, f64::from(y) + dy);
-            sum += self.painter.trace(ray, Key::camera(x, y, subpixel as u32), kept, counts);
+            rays.clear();
+            for (x, y) in pixels() {
+                let ray = projection.ray(f64::from(x) + dx, f64::from(y) + dy);
+                rays.push(&ray, Key::camera(x, y, subpixel as u32));
+            }
+            let radiances = self.painter.trace(&rays, kept, counts);
+            for (sum, radiance) in sums.iter_mut().zip(radiances) {
+                *sum += radiance;
+            }
             // Afterwards: what was cancelled on its way is unfinished.
             if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
                 return None;
             }
         }
-        let mean = sum * (1.0 / f64::from(samples * samples));
-        let mean = mean.to_array().map(|channel| channel as f32);
-        self.painter.end_pixel(x, y, mean, kept);
-        Some(mean)
+        let means = pixels().zip(sums).map(|((x, y), sum)| {
+            let mean = sum * (1.0 / f64::from(samples * samples));
+            let mean = mean.to_array().map(|channel| channel as f32);
+            self.painter.end_pixel(x, y, mean, kept);
+            mean
+        });
+        Some(means.collect())
     }
 }
 

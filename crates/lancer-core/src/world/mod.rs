@@ -22,6 +22,7 @@ mod fan;
 mod geometry;
 mod intersection;
 mod media;
+mod packet;
 #[cfg(test)]
 mod tests;
 

@@ -14,7 +14,7 @@ use super::lanes::{cross, dot, largest, load3, splat3, sub};
 use super::ray::{
     LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened,
 };
-use super::walk::{STACK, walk_from};
+use super::walk::{LeafVisitor, STACK, walk_from};
 use crate::accel::bvh::{Child, WIDTH, WideNode};
 use crate::accel::tally::Tally;
 use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
@@ -504,30 +504,50 @@ fn alone<S: Simd>(
     let ray = fan.ray(i);
     let block_ray = BlockRay::new(simd, &ray);
     let sure_end = fan.reach * (1.0 - 1e-5);
-    let mut found = false;
-    walk_from::<S, true>(simd, &tree.nodes, start, &ray, tally, |leaf| {
+    let mut search =
+        Alone { simd, tree, fan, ray: &ray, block_ray, sure_end, i, tally, decide, found: false };
+    walk_from::<S, true>(simd, &tree.nodes, start, &ray, tally, &mut search);
+    search.found
+}
+
+/// The search of one direction on its way.
+struct Alone<'a, S: Simd, T, D> {
+    simd: S,
+    tree: &'a TriangleTree,
+    fan: &'a Fan,
+    ray: &'a NarrowRay,
+    block_ray: BlockRay<S>,
+    sure_end: f32,
+    i: usize,
+    tally: &'a T,
+    decide: &'a mut D,
+    found: bool,
+}
+
+impl<S: Simd, T: Tally, D: FnMut(usize, &[[f32; 3]; 3]) -> bool> LeafVisitor for Alone<'_, S, T, D> {
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> f32 {
         let mut left = leaf.count();
-        for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
-            tally.triangles(left.min(BLOCK));
-            let verdict = block.test(simd, &block_ray, left.min(BLOCK), ray.end);
+        for block in &self.tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
+            self.tally.triangles(left.min(BLOCK));
+            let verdict = block.test(self.simd, &self.block_ray, left.min(BLOCK), self.ray.end);
             let mut maybe = verdict.maybe;
             while maybe != 0 {
                 let lane = maybe.trailing_zeros() as usize;
                 maybe &= maybe - 1;
-                if block.ids[lane] == fan.own {
+                if block.ids[lane] == self.fan.own {
                     continue;
                 }
-                let sure = verdict.sure >> lane & 1 == 1 && verdict.latest(lane) < sure_end;
-                if sure || decide(i, &block.triangle(lane)) {
-                    found = true;
+                let sure = verdict.sure >> lane & 1 == 1 && verdict.latest(lane) < self.sure_end;
+                if sure || (self.decide)(self.i, &block.triangle(lane)) {
+                    self.found = true;
                     return -1.0;
                 }
             }
             left = left.saturating_sub(BLOCK);
         }
-        ray.end
-    });
-    found
+        self.ray.end
+    }
 }
 
 impl Fan {

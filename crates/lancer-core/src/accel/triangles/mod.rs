@@ -7,6 +7,7 @@
 mod block;
 mod fan;
 mod lanes;
+mod packet;
 mod ray;
 mod single;
 #[cfg(test)]
@@ -14,14 +15,15 @@ mod tests;
 mod walk;
 
 pub(crate) use fan::Receiver;
+pub(crate) use packet::{DONE, Lane, NarrowPacket, Visitor, bits, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
 use super::Aabb;
 use super::bvh::{BuildError, Bvh, Child, Quality, WideNode, boxes_at};
-use super::tally::Tally;
+use super::tally::{Tally, Uncounted};
 use crate::cancel::CancelToken;
-use crate::geometry::{Bounds, DirectionFan, Ray};
+use crate::geometry::{Bounds, DirectionFan, Ray, RayPacket};
 use crate::mesh::Mesh;
 use crate::shape::Hit;
 use crate::shape::triangle::Nearest;
@@ -140,10 +142,30 @@ impl TriangleTree {
         match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => false,
             Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::occluded(simd, self, ray, &narrow, tally))
+                dispatch!(self.level, simd => single::occluded(simd, self, Child::inner(0), ray, &narrow, tally))
             }
             Narrowed::OutOfRange => self.intersect_wide(ray, tally).is_some(),
         }
+    }
+
+    /// The nearest hits of the rays `wanted` of a packet, each as [`TriangleTree::intersect`] would find it.
+    pub(crate) fn intersect_packet(&self, rays: &RayPacket, wanted: u32) -> [Option<Hit>; RayPacket::LANES] {
+        let (mut hits, left_over) =
+            dispatch!(self.level, simd => packet::intersect(simd, self, rays, wanted));
+        for lane in bits(left_over) {
+            hits[lane] = self.intersect(&rays.ray(lane), &Uncounted);
+        }
+        hits
+    }
+
+    /// Which of the rays `wanted` of a packet hit anything.
+    pub(crate) fn occluded_packet(&self, rays: &RayPacket, wanted: u32) -> u32 {
+        let (mut occluded, left_over) =
+            dispatch!(self.level, simd => packet::occluded(simd, self, rays, wanted));
+        for lane in bits(left_over) {
+            occluded |= u32::from(self.occluded(&rays.ray(lane), &Uncounted)) << lane;
+        }
+        occluded
     }
 
     /// Which of the directions `wanted` from a point meet a triangle; none where the numbers leave the range of

@@ -27,13 +27,15 @@ pub(crate) struct NarrowRay {
     /// missed.
     pub(super) enter_offset: [f32; 3],
     pub(super) leave_offset: [f32; 3],
+    /// What those offsets hold for that, as a distance.
+    pub(super) margin: f32,
     /// How far its start may lie from the true one.
     pub(super) origin_error: f32,
     /// Up to which `s` hits count. May exceed the bounds.
     pub(super) end: f32,
     /// The ray's t at `s` = 0, and the `s` of a unit of t.
-    start: f64,
-    scale: f64,
+    pub(super) start: f64,
+    pub(super) scale: f64,
 }
 
 /// What becomes of a ray.
@@ -58,52 +60,14 @@ impl NarrowRay {
     /// Prepares a ray for what lies within `bounds`, which are finite and not empty.
     #[inline]
     pub(crate) fn prepare(ray: &Ray, bounds: &Bounds) -> Narrowed {
-        let length = ray.direction.abs().max_element();
-        let scale = 1.0 / length;
-        let direction = ray.direction * scale;
-        let size = size_of(bounds);
-        let distance = ray.origin.abs().max_element();
-        if !(in_range(bounds, ray.origin) && scale.is_finite() && length < 1e100) {
-            return Narrowed::OutOfRange;
+        let clipped = Clipped::new(ray, bounds);
+        if !clipped.fits {
+            Narrowed::OutOfRange
+        } else if !clipped.meets {
+            Narrowed::Misses
+        } else {
+            Narrowed::Ready(clipped.narrow())
         }
-        // All rounding in f64, here and in the canonical test, is below this.
-        let slack = (distance + size) * (256.0 * f64::EPSILON);
-        // A component that is taken for more than it is moves the ray by no more than this.
-        let moved = (distance + size) * LEAST_COMPONENT;
-        let Some((enter, leave)) = slab(ray.origin, direction, bounds, slack + moved) else {
-            return Narrowed::Misses;
-        };
-        let last = ray.t_max * length;
-        if enter > last {
-            return Narrowed::Misses;
-        }
-        // A little before the bounds, so that a hit on their face is clearly ahead.
-        let start = (enter - size * (1.0 / 64.0)).max(0.0);
-        let origin = ray.origin + direction * start;
-        let end = (last - start).min(2.0 * (leave - start) + size);
-        Narrowed::Ready(Self::assemble(origin, direction, size, slack, end, start, length))
-    }
-
-    #[inline]
-    fn assemble(
-        origin: DVec3,
-        direction: DVec3,
-        size: f64,
-        slack: f64,
-        end: f64,
-        start: f64,
-        length: f64,
-    ) -> Self {
-        let size = size.max(origin.abs().max_element());
-        let narrow = narrowed(origin);
-        let rest = narrowed(origin - widened(narrow));
-        let inverse = narrowed(safe_inverse(direction));
-        // A slab test computes b * inverse + offset. The sum of its errors is below 12 units of roundoff of
-        // |b| + |origin|, each at most `size`. Derived in docs/how-it-works/kernels.md.
-        let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + slack as f32;
-        let direction = narrowed(direction);
-        let ray = Self::from_narrow(narrow, rest, direction, inverse, margin, slack as f32, end as f32);
-        Self { start, scale: length, ..ray }
     }
 
     /// A ray whose parameter is its own t, of numbers that are known to be in range. `margin` bounds the error of
@@ -127,6 +91,7 @@ impl NarrowRay {
             inverse,
             enter_offset: [base(0) - slack(0), base(1) - slack(1), base(2) - slack(2)],
             leave_offset: [base(0) + slack(0), base(1) + slack(1), base(2) + slack(2)],
+            margin,
             origin_error,
             end,
             start: 0.0,
@@ -143,39 +108,105 @@ impl NarrowRay {
     }
 }
 
+/// The part of a ray that lies within bounds, still in `f64`. Without branches, so that many can be made at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clipped {
+    /// Where the part starts, a little before the bounds.
+    origin: DVec3,
+    /// Its largest component is 1 in size.
+    direction: DVec3,
+    /// How long it is, and how far from the ray's origin it starts, in lengths of `direction`.
+    end: f64,
+    start: f64,
+    /// The length of the ray's own direction in that measure.
+    length: f64,
+    /// What bounds its coordinates, and all rounding in `f64`.
+    size: f64,
+    slack: f64,
+    /// Whether the ray meets the bounds.
+    pub(super) meets: bool,
+    /// Whether its numbers suit `f32`.
+    pub(super) fits: bool,
+}
+
+impl Clipped {
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray, bounds: &Bounds) -> Self {
+        let length = ray.direction.abs().max_element();
+        let scale = 1.0 / length;
+        let direction = ray.direction * scale;
+        let size = size_of(bounds);
+        let distance = ray.origin.abs().max_element();
+        // All rounding in f64, here and in the canonical test, is below this.
+        let slack = (distance + size) * (256.0 * f64::EPSILON);
+        // A component that is taken for more than it is moves the ray by no more than this.
+        let moved = (distance + size) * LEAST_COMPONENT;
+        let inverse = safe_inverse(direction);
+        let low = (bounds.min - (slack + moved) - ray.origin) * inverse;
+        let high = (bounds.max + (slack + moved) - ray.origin) * inverse;
+        let enter = low.min(high).max_element().max(0.0);
+        let leave = low.max(high).min_element();
+        let last = ray.t_max * length;
+        // A little before the bounds, so that a hit on their face is clearly ahead.
+        let start = (enter - size * (1.0 / 64.0)).max(0.0);
+        Self {
+            origin: ray.origin + direction * start,
+            direction,
+            end: (last - start).min(2.0 * (leave - start) + size),
+            start,
+            length,
+            size,
+            slack,
+            meets: (enter <= leave) & (enter <= last),
+            fits: in_range(bounds, ray.origin) & scale.is_finite() & (length < 1e100),
+        }
+    }
+
+    /// The ray in `f32`, where it meets the bounds and fits.
+    #[inline(always)]
+    pub(super) fn narrow(&self) -> NarrowRay {
+        let size = self.size.max(self.origin.abs().max_element());
+        let narrow = narrowed(self.origin);
+        // A slab test computes b * inverse + offset. The sum of its errors is below 12 units of roundoff of
+        // |b| + |origin|, each at most `size`. Derived in docs/how-it-works/kernels.md.
+        let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + self.slack as f32;
+        let ray = NarrowRay::from_narrow(
+            narrow,
+            narrowed(self.origin - widened(narrow)),
+            narrowed(self.direction),
+            narrowed(safe_inverse(self.direction)),
+            margin,
+            self.slack as f32,
+            self.end as f32,
+        );
+        NarrowRay { start: self.start, scale: self.length, ..ray }
+    }
+}
+
 /// The largest coordinate within `bounds`, in size.
-#[inline]
+#[inline(always)]
 pub(super) fn size_of(bounds: &Bounds) -> f64 {
     bounds.min.abs().max(bounds.max.abs()).max_element()
 }
 
 /// Whether kernels can work within `bounds` on rays from `origin`.
+#[inline(always)]
 pub(super) fn in_range(bounds: &Bounds, origin: DVec3) -> bool {
     let size = size_of(bounds);
-    SIZES.contains(&size) && origin.abs().max_element() < size * 1e6
+    SIZES.contains(&size) & (origin.abs().max_element() < size * 1e6)
 }
 
-/// Where a ray enters and leaves a box, from its origin on, widened by `slack`.
-#[inline]
-fn slab(origin: DVec3, direction: DVec3, bounds: &Bounds, slack: f64) -> Option<(f64, f64)> {
-    let inverse = safe_inverse(direction);
-    let low = (bounds.min - slack - origin) * inverse;
-    let high = (bounds.max + slack - origin) * inverse;
-    let enter = low.min(high).max_element().max(0.0);
-    let leave = low.max(high).min_element();
-    (enter <= leave).then_some((enter, leave))
-}
-
+#[inline(always)]
 fn safe_inverse(direction: DVec3) -> DVec3 {
     direction.abs().max(DVec3::splat(LEAST_COMPONENT)).copysign(direction).recip()
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn narrowed(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn widened([x, y, z]: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(x), f64::from(y), f64::from(z))
 }

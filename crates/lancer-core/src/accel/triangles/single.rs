@@ -3,7 +3,8 @@
 use super::TriangleTree;
 use super::block::{BLOCK, BlockRay};
 use super::ray::NarrowRay;
-use super::walk::walk;
+use super::walk::{LeafVisitor, walk, walk_from};
+use crate::accel::bvh::Child;
 use crate::accel::tally::Tally;
 use crate::geometry::Ray;
 use crate::shape::Hit;
@@ -11,15 +12,77 @@ use crate::shape::triangle::{Canonical, Nearest};
 use arrayvec::ArrayVec;
 use fearless_simd::Simd;
 
-/// Triangles that may be the nearest hit, kept until the walk has ended. More than one are kept only where two
+/// Triangles that may be a ray's nearest hit, kept until its walk has ended. More than one are kept only where two
 /// lie within rounding of each other, as at an edge.
-const CANDIDATES: usize = 8;
+#[derive(Clone, Debug, Default)]
+pub(super) struct Candidates(ArrayVec<Candidate, { Self::ROOM }>);
 
-#[derive(Clone, Copy)]
-struct Candidate {
-    block: u32,
-    lane: u32,
-    earliest: f32,
+/// One of them, and where the ray hits it at the soonest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub(super) block: u32,
+    pub(super) triangle: u32,
+    pub(super) earliest: f32,
+}
+
+impl Candidates {
+    const ROOM: usize = 8;
+
+    /// Adds one that lies before `end`. Where it is hit for sure, `latest` at the latest, that is the new end.
+    /// False where there is no room.
+    #[inline(always)]
+    pub(super) fn add(&mut self, candidate: Candidate, latest: Option<f32>, end: &mut f32) -> bool {
+        if let Some(latest) = latest {
+            *end = end.min(latest);
+        }
+        if self.0.is_full() || latest.is_some() {
+            let end = *end;
+            self.0.retain(|candidate| candidate.earliest <= end);
+        }
+        self.0.try_push(candidate).is_ok()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Lets the canonical test decide between them.
+    #[inline(never)]
+    pub(super) fn settle(&mut self, tree: &TriangleTree, nearest: &mut Nearest, end: f32) {
+        for candidate in self.0.drain(..).filter(|candidate| candidate.earliest <= end) {
+            let block = &tree.blocks[candidate.block as usize];
+            let triangle = candidate.triangle as usize;
+            nearest.consider(block.ids[triangle], &block.triangle(triangle));
+        }
+    }
+}
+
+/// Calls `add` with the triangles of a leaf that a ray may hit before `end`, and for those that it hits for sure up
+/// to where.
+#[inline(always)]
+pub(super) fn add_leaf<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    ray: &BlockRay<S>,
+    leaf: Child,
+    end: &mut f32,
+    mut add: impl FnMut(Candidate, Option<f32>, &mut f32),
+) {
+    let mut left = leaf.count();
+    let mut index = leaf.first();
+    while left > 0 {
+        let verdict = tree.blocks[index].test(simd, ray, left.min(BLOCK), *end);
+        let mut maybe = verdict.maybe;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() as usize;
+            maybe &= maybe - 1;
+            let latest = (verdict.sure >> lane & 1 == 1).then(|| verdict.latest(lane));
+            let earliest = verdict.earliest(lane);
+            add(Candidate { block: index as u32, triangle: lane as u32, earliest }, latest, end);
+        }
+        left = left.saturating_sub(BLOCK);
+        index += 1;
+    }
 }
 
 /// The nearest hit.
@@ -31,99 +94,108 @@ pub(super) fn intersect<S: Simd>(
     narrow: &NarrowRay,
     tally: &impl Tally,
 ) -> Option<Hit> {
-    let block_ray = BlockRay::new(simd, narrow);
-    let mut nearest: Option<Nearest> = None;
-    let mut candidates = ArrayVec::<Candidate, CANDIDATES>::new();
-    let mut end = narrow.end;
-    walk::<S, true>(simd, &tree.nodes, narrow, tally, |leaf| {
-        let mut left = leaf.count();
-        let mut index = leaf.first();
-        while left > 0 {
-            tally.triangles(left.min(BLOCK));
-            let verdict = tree.blocks[index].test(simd, &block_ray, left.min(BLOCK), end);
-            let mut maybe = verdict.maybe;
-            while maybe != 0 {
-                let lane = maybe.trailing_zeros() as usize;
-                let sure = verdict.sure >> lane & 1 == 1;
-                maybe &= maybe - 1;
-                let earliest = verdict.earliest(lane);
-                if sure {
-                    end = end.min(verdict.latest(lane));
-                }
-                if candidates.is_full() {
-                    candidates.retain(|candidate| candidate.earliest <= end);
-                }
-                if candidates.is_full() {
-                    let nearest = nearest.get_or_insert_with(|| Nearest::new(ray));
-                    settle(tree, nearest, &mut candidates, end);
-                    if nearest.found().is_some() {
-                        end = end.min(narrow.up_to(nearest.t()));
-                    }
-                }
-                candidates.push(Candidate { block: index as u32, lane: lane as u32, earliest });
-            }
-            left = left.saturating_sub(BLOCK);
-            index += 1;
-        }
-        end
-    });
+    let mut search = NearestSearch {
+        simd,
+        tree,
+        ray,
+        narrow,
+        block_ray: BlockRay::new(simd, narrow),
+        tally,
+        nearest: None,
+        candidates: Candidates::default(),
+        end: narrow.end,
+    };
+    walk::<S, true>(simd, &tree.nodes, narrow, tally, &mut search);
+    let NearestSearch { mut candidates, mut nearest, end, .. } = search;
     if !candidates.is_empty() {
-        settle(tree, nearest.get_or_insert_with(|| Nearest::new(ray)), &mut candidates, end);
+        candidates.settle(tree, nearest.get_or_insert_with(|| Nearest::new(ray)), end);
     }
     nearest.and_then(|nearest| nearest.found())
 }
 
-/// Lets the canonical test decide between the candidates.
-#[inline(never)]
-fn settle(
-    tree: &TriangleTree,
-    nearest: &mut Nearest,
-    candidates: &mut ArrayVec<Candidate, CANDIDATES>,
+/// A search for the nearest hit on its way.
+struct NearestSearch<'a, S: Simd, T> {
+    simd: S,
+    tree: &'a TriangleTree,
+    ray: &'a Ray,
+    narrow: &'a NarrowRay,
+    block_ray: BlockRay<S>,
+    tally: &'a T,
+    nearest: Option<Nearest<'a>>,
+    candidates: Candidates,
     end: f32,
-) {
-    for candidate in candidates.drain(..).filter(|candidate| candidate.earliest <= end) {
-        let block = &tree.blocks[candidate.block as usize];
-        let lane = candidate.lane as usize;
-        nearest.consider(block.ids[lane], &block.triangle(lane));
+}
+
+impl<S: Simd, T: Tally> LeafVisitor for NearestSearch<'_, S, T> {
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> f32 {
+        self.tally.triangles(leaf.count());
+        let mut end = self.end;
+        add_leaf(self.simd, self.tree, &self.block_ray, leaf, &mut end, |candidate, latest, end| {
+            if !self.candidates.add(candidate, latest, end) {
+                let nearest = self.nearest.get_or_insert_with(|| Nearest::new(self.ray));
+                self.candidates.settle(self.tree, nearest, *end);
+                if nearest.found().is_some() {
+                    *end = end.min(self.narrow.up_to(nearest.t()));
+                }
+                self.candidates.add(candidate, latest, end);
+            }
+        });
+        self.end = end;
+        end
     }
 }
 
-/// Whether anything is hit.
+/// Whether anything below `start` is hit.
 #[inline(always)]
 pub(super) fn occluded<S: Simd>(
     simd: S,
     tree: &TriangleTree,
+    start: Child,
     ray: &Ray,
     narrow: &NarrowRay,
     tally: &impl Tally,
 ) -> bool {
     let block_ray = BlockRay::new(simd, narrow);
-    let mut found = false;
-    let mut canonical = Canonical::new(ray);
-    walk::<S, true>(simd, &tree.nodes, narrow, tally, |leaf| {
+    let canonical = Canonical::new(ray);
+    let mut search = OcclusionSearch { simd, tree, narrow, block_ray, tally, canonical, found: false };
+    walk_from::<S, true>(simd, &tree.nodes, start, narrow, tally, &mut search);
+    search.found
+}
+
+/// A search for any hit on its way.
+struct OcclusionSearch<'a, S: Simd, T> {
+    simd: S,
+    tree: &'a TriangleTree,
+    narrow: &'a NarrowRay,
+    block_ray: BlockRay<S>,
+    tally: &'a T,
+    canonical: Canonical<'a>,
+    found: bool,
+}
+
+impl<S: Simd, T: Tally> LeafVisitor for OcclusionSearch<'_, S, T> {
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> f32 {
         let mut left = leaf.count();
         let mut index = leaf.first();
         while left > 0 {
-            let block = &tree.blocks[index];
-            tally.triangles(left.min(BLOCK));
-            let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);
+            let block = &self.tree.blocks[index];
+            self.tally.triangles(left.min(BLOCK));
+            let verdict = block.test(self.simd, &self.block_ray, left.min(BLOCK), self.narrow.end);
             let mut unsure = verdict.maybe;
-            if verdict.sure != 0 {
-                found = true;
-                return -1.0;
-            }
-            while unsure != 0 {
+            self.found = verdict.sure != 0;
+            while unsure != 0 && !self.found {
                 let lane = unsure.trailing_zeros() as usize;
                 unsure &= unsure - 1;
-                if canonical.hits(&block.triangle(lane)) {
-                    found = true;
-                    return -1.0;
-                }
+                self.found = self.canonical.hits(&block.triangle(lane));
+            }
+            if self.found {
+                return -1.0;
             }
             left = left.saturating_sub(BLOCK);
             index += 1;
         }
-        narrow.end
-    });
-    found
+        self.narrow.end
+    }
 }

@@ -119,6 +119,62 @@ fn nearest_and_any_hit_are_those_of_the_canonical_test_on_every_triangle() {
     assert!(hits > 1000 && misses > 1000, "{hits} hits, {misses} misses");
 }
 
+/// Rays of one packet: side by side from one place, from many places to one, or each for itself; some lanes empty.
+fn packet(random: &mut Random, mesh: &Mesh) -> (RayPacket, u32) {
+    let size = mesh.bounds().diagonal();
+    let first = ray(random, mesh);
+    let mut packet = RayPacket::splat(&first);
+    let (sort, spread) = (random.below(4), [1e-6, 1e-3, 0.03, 0.3][random.below(4)]);
+    for lane in 0..RayPacket::LANES {
+        let around = random.point(spread);
+        packet.set(
+            lane,
+            &match sort {
+                0 => Ray { direction: first.direction + around * first.direction.length(), ..first },
+                1 => {
+                    let origin = first.origin + around * size;
+                    Ray { origin, direction: first.at(1.0) - origin, t_max: 1.0 }
+                }
+                2 => Ray { origin: first.origin + around * size, ..first },
+                _ => ray(random, mesh),
+            },
+        );
+    }
+    let wanted = [0xffff, 0xffff, 0x00ff, 0x8421, 0x0013, random.below(1 << 16) as u32][random.below(6)];
+    (packet, wanted)
+}
+
+#[test]
+fn packets_find_what_each_of_their_rays_finds_alone() {
+    let mut random = Random::new(4);
+    let mut hits = [0; 2];
+    for mesh in meshes() {
+        let trees: Vec<_> = levels().map(|level| build(&mesh, level)).collect();
+        for _ in 0..120 {
+            let (packet, wanted) = packet(&mut random, &mesh);
+            for tree in &trees {
+                let nearest = tree.intersect_packet(&packet, wanted);
+                let occluded = tree.occluded_packet(&packet, wanted);
+                assert_eq!(occluded & !wanted, 0);
+                for (lane, nearest) in nearest.into_iter().enumerate() {
+                    let is_wanted = wanted >> lane & 1 == 1;
+                    let alone = tree.intersect(&packet.ray(lane), &Uncounted).filter(|_| is_wanted);
+                    assert_eq!(nearest, alone, "{:?} {:?} {wanted:x}", tree.level, packet.ray(lane));
+                    assert_eq!(
+                        occluded >> lane & 1 == 1,
+                        alone.is_some(),
+                        "{:?} {:?}",
+                        tree.level,
+                        packet.ray(lane)
+                    );
+                    hits[usize::from(alone.is_some())] += 1;
+                }
+            }
+        }
+    }
+    assert!(hits[0] > 10_000 && hits[1] > 10_000, "{hits:?}");
+}
+
 #[test]
 fn a_ray_along_an_axis_just_inside_of_the_bounds_hits() {
     let mesh = Mesh::new(grid(1)).unwrap();
@@ -151,7 +207,7 @@ fn most_rays_are_settled_without_the_canonical_test() {
         let Narrowed::Ready(narrow) = NarrowRay::prepare(&ray, &tree.bounds) else { continue };
         dispatch!(tree.level, simd => {
             let block_ray = block::BlockRay::new(simd, &narrow);
-            walk::<_, true>(simd, &tree.nodes, &narrow, &Uncounted, |leaf| {
+            walk::<_, true>(simd, &tree.nodes, &narrow, &Uncounted, &mut |leaf: Child| {
                 let mut left = leaf.count();
                 for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
                     let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);

@@ -11,19 +11,30 @@ use fearless_simd::prelude::*;
 /// Room for all that can wait: each level of the tree leaves seven children behind.
 pub(super) const STACK: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1) + 1;
 
-/// Calls `visit` with the leaves that a ray meets.
-///
-/// `visit` is given a leaf and returns the `s` up to which hits still count; a negative one ends the walk. With
-/// `NEAREST_FIRST`, leaves that are entered sooner come sooner, by the order of each node's children.
+/// Who is shown the leaves that a ray meets.
+pub(crate) trait LeafVisitor {
+    /// Looks at a leaf. Returns the `s` up to which hits still count; a negative one ends the walk.
+    fn leaf(&mut self, leaf: Child) -> f32;
+}
+
+/// For what holds no vector code: a closure is not always inlined, and that must be.
+impl<F: FnMut(Child) -> f32> LeafVisitor for F {
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> f32 {
+        self(leaf)
+    }
+}
+
+/// Shows a visitor the leaves that a ray meets. With `NEAREST_FIRST`, leaves that are entered sooner come sooner, by the order of each node's children.
 #[inline(always)]
 pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
     simd: S,
     nodes: &[WideNode],
     ray: &NarrowRay,
     tally: &impl Tally,
-    visit: impl FnMut(Child) -> f32,
+    visitor: &mut impl LeafVisitor,
 ) {
-    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, tally, visit);
+    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, tally, visitor);
 }
 
 /// As [`walk`], through the part of the hierarchy below `start`.
@@ -34,7 +45,7 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
     start: Child,
     ray: &NarrowRay,
     tally: &impl Tally,
-    mut visit: impl FnMut(Child) -> f32,
+    visitor: &mut impl LeafVisitor,
 ) {
     let inverse: [f32x8<S>; 3] = splat3(simd, ray.inverse);
     let enter_offset: [f32x8<S>; 3] = splat3(simd, ray.enter_offset);
@@ -46,7 +57,7 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
     let mut current = start;
     loop {
         if current.is_leaf() {
-            end = visit(current);
+            end = visitor.leaf(current);
             if end < 0.0 {
                 return;
             }

@@ -24,8 +24,8 @@ use super::{Control, Region, Render, RenderError};
 use crate::accel::Visits;
 use crate::camera::Camera;
 use crate::color::Rgb;
-use crate::geometry::{DVec3, Ray};
-use crate::integrator::{RayCounts, Scratch, Whitted};
+use crate::geometry::{DVec3, Ray, RayPacket};
+use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
 use crate::sampling::Key;
 use crate::scene::Settings;
 use crate::world::{Intersection, Media, World};
@@ -327,26 +327,20 @@ impl Painter for PassPainter<'_> {
         }
     }
 
-    fn trace(&self, ray: Ray, key: Key, tile: &mut PassTile, counts: &mut RayCounts) -> Rgb {
-        let before = *counts;
-        tile.gather.begin();
-        let PassTile { scratch, gather, visits, .. } = tile;
-        let radiance = if self.wants.cost {
-            self.integrator.radiance_tallied(ray, &self.media, key, scratch, counts, gather, visits)
-        } else {
-            self.integrator.radiance(ray, &self.media, key, scratch, counts, gather)
-        };
-        tile.gather.end(counts.replaced > before.replaced);
-        tile.rays += counts.total() - before.total();
-        if self.wants.occlusion {
-            tile.occlusion += match (tile.gather.occlusion(), tile.gather.seen()) {
-                (Some(factor), _) => factor,
-                // The ambient term was zero whatever c_a is, and did not ask for it.
-                (None, Some(at)) => self.integrator.occlusion_at(at, key, counts),
-                (None, None) => 1.0,
-            };
+    /// One pixel at a time: what is gathered is its own.
+    const SIDE: u32 = 1;
+
+    fn trace(
+        &self,
+        rays: &CameraRays,
+        tile: &mut PassTile,
+        counts: &mut RayCounts,
+    ) -> [Rgb; RayPacket::LANES] {
+        let mut radiances = [Rgb::BLACK; RayPacket::LANES];
+        for (radiance, (ray, key)) in radiances.iter_mut().zip(rays.iter()) {
+            *radiance = self.trace_one(ray, key, tile, counts);
         }
-        radiance
+        radiances
     }
 
     fn end_pixel(&self, x: u32, y: u32, mean: [f32; 3], tile: &mut PassTile) {
@@ -396,6 +390,30 @@ impl Painter for PassPainter<'_> {
         for (layer, part) in layers.iter_mut().zip(&tile.layers) {
             layer.samples.put(&part.samples, area, self.width);
         }
+    }
+}
+
+impl PassPainter<'_> {
+    fn trace_one(&self, ray: Ray, key: Key, tile: &mut PassTile, counts: &mut RayCounts) -> Rgb {
+        let before = *counts;
+        tile.gather.begin();
+        let PassTile { scratch, gather, visits, .. } = tile;
+        let radiance = if self.wants.cost {
+            self.integrator.radiance_tallied(ray, &self.media, key, scratch, counts, gather, visits)
+        } else {
+            self.integrator.radiance(ray, &self.media, key, scratch, counts, gather)
+        };
+        tile.gather.end(counts.replaced > before.replaced);
+        tile.rays += counts.total() - before.total();
+        if self.wants.occlusion {
+            tile.occlusion += match (tile.gather.occlusion(), tile.gather.seen()) {
+                (Some(factor), _) => factor,
+                // The ambient term was zero whatever c_a is, and did not ask for it.
+                (None, Some(at)) => self.integrator.occlusion_at(at, key, counts),
+                (None, None) => 1.0,
+            };
+        }
+        radiance
     }
 }
 

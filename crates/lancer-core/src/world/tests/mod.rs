@@ -7,7 +7,7 @@ mod recompile;
 use super::*;
 use crate::accel::Accelerator;
 
-use crate::geometry::{DVec3, Transform};
+use crate::geometry::{DVec3, RayPacket, Transform};
 use crate::mesh::{Mesh, MeshData};
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::{Node, Scene, Shape, Texture};
@@ -59,6 +59,44 @@ fn crowd(seed: u32) -> Scene {
     let twin = scene.nodes()[1].clone();
     scene.add(twin);
     scene
+}
+
+#[test]
+fn packets_find_what_each_of_their_rays_finds_alone() {
+    let mut random = Random::new(11);
+    let mut hits = [0; 2];
+    for seed in 0..4 {
+        let scene = crowd(seed);
+        for accelerator in Accelerator::ALL {
+            let options = CompileOptions { accelerator, ..CompileOptions::default() };
+            let world = World::compile(&scene, &options).unwrap();
+            for _ in 0..200 {
+                let (first, spread) = (random.ray(3.0), [1e-3, 0.03, 0.3, 3.0][random.below(4)]);
+                let mut packet = RayPacket::splat(&first);
+                for lane in 0..RayPacket::LANES {
+                    let direction = first.direction + random.point(spread);
+                    let t_max = if random.below(3) == 0 { random.between(0.0, 4.0) } else { f64::INFINITY };
+                    packet.set(lane, &Ray { direction, t_max, ..first });
+                }
+                let wanted = [0xffff, 0x0fff, 0x1020, 0xaaaa][random.below(4)];
+                let nearest = world.intersect_packet(&packet, wanted);
+                let occluded = world.occluded_packet(&packet, wanted);
+                assert_eq!(occluded & !wanted, 0);
+                for (lane, nearest) in nearest.into_iter().enumerate() {
+                    let alone = world.intersect(&packet.ray(lane)).filter(|_| wanted >> lane & 1 == 1);
+                    assert_eq!(nearest, alone, "{accelerator:?} {:?}", packet.ray(lane));
+                    assert_eq!(
+                        occluded >> lane & 1 == 1,
+                        alone.is_some(),
+                        "{accelerator:?} {:?}",
+                        packet.ray(lane)
+                    );
+                    hits[usize::from(alone.is_some())] += 1;
+                }
+            }
+        }
+    }
+    assert!(hits[0] > 5_000 && hits[1] > 5_000, "{hits:?}");
 }
 
 #[test]

@@ -1,0 +1,621 @@
+//! Sixteen rays that go much the same way, searched together.
+//!
+//! The boxes of a node are first held against the interval of all rays at once, eight boxes in one test; those that
+//! some ray may meet are then held against each ray, sixteen in one test. So are triangles.
+//!
+//! Source: Reshetov, Soupikov, Hurley, "Multi-level ray tracing algorithm" (2005), for the interval; Wald,
+//! Boulos, Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies" (2007), for packets.
+
+use super::TriangleTree;
+use super::block::{BLOCK, Block, BlockRay};
+use super::lanes::{add, cross, dot, largest, load3, splat3, sub};
+use super::ray::{Clipped, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
+use super::single::{self, Candidate, Candidates, add_leaf};
+use super::walk::{LeafVisitor, STACK, walk_from};
+use crate::accel::bvh::{Child, WideNode};
+use crate::accel::tally::Uncounted;
+use crate::geometry::{Bounds, RayPacket};
+use crate::shape::Hit;
+use crate::shape::triangle::{Canonical, Nearest};
+use arrayvec::ArrayVec;
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, f32x16};
+
+const LANES: usize = RayPacket::LANES;
+
+/// A number for each ray.
+pub(crate) type Lane = [f32; LANES];
+
+/// Where this many rays or fewer go one way, they go on one by one: eight boxes for one ray then do more than sixteen
+/// rays for one box, most of them idle.
+const ALONE: u32 = 2;
+
+/// The end of a ray that wants nothing more.
+pub(crate) const DONE: f32 = -1.0;
+
+/// A packet in `f32`; see [`NarrowRay`] for its parts.
+#[derive(Clone, Debug)]
+pub(crate) struct NarrowPacket {
+    origin: [Lane; 3],
+    origin_rest: [Lane; 3],
+    direction: [Lane; 3],
+    inverse: [Lane; 3],
+    enter_offset: [Lane; 3],
+    leave_offset: [Lane; 3],
+    margin: Lane,
+    origin_error: Lane,
+    pub(crate) end: Lane,
+    start: [f64; LANES],
+    scale: [f64; LANES],
+    /// The rays that can be traced so, a bit for each.
+    pub(crate) ready: u32,
+    /// The rays that cannot.
+    pub(crate) out_of_range: u32,
+}
+
+impl NarrowPacket {
+    /// Prepares the rays `wanted` for what lies within `bounds`.
+    #[inline(always)]
+    pub(crate) fn new(rays: &RayPacket, wanted: u32, bounds: &Bounds) -> Self {
+        let zero = [0.0; LANES];
+        let mut packet = Self {
+            origin: [zero; 3],
+            origin_rest: [zero; 3],
+            direction: [zero; 3],
+            inverse: [zero; 3],
+            enter_offset: [zero; 3],
+            leave_offset: [zero; 3],
+            margin: zero,
+            origin_error: zero,
+            end: zero,
+            start: [0.0; LANES],
+            scale: [0.0; LANES],
+            ready: 0,
+            out_of_range: 0,
+        };
+        let (mut meets, mut fits) = ([false; LANES], [false; LANES]);
+        for lane in 0..LANES {
+            let clipped = Clipped::new(&rays.ray(lane), bounds);
+            let ray = clipped.narrow();
+            (meets[lane], fits[lane]) = (clipped.meets, clipped.fits);
+            packet.put(lane, &ray);
+        }
+        for lane in 0..LANES {
+            packet.ready |= u32::from(meets[lane] & fits[lane]) << lane;
+            packet.out_of_range |= u32::from(!fits[lane]) << lane;
+        }
+        packet.ready &= wanted;
+        packet.out_of_range &= wanted;
+        packet
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, ray: &NarrowRay) {
+        for axis in 0..3 {
+            self.origin[axis][lane] = ray.origin[axis];
+            self.origin_rest[axis][lane] = ray.origin_rest[axis];
+            self.direction[axis][lane] = ray.direction[axis];
+            self.inverse[axis][lane] = ray.inverse[axis];
+            self.enter_offset[axis][lane] = ray.enter_offset[axis];
+            self.leave_offset[axis][lane] = ray.leave_offset[axis];
+        }
+        self.margin[lane] = ray.margin;
+        self.origin_error[lane] = ray.origin_error;
+        self.end[lane] = ray.end;
+        self.start[lane] = ray.start;
+        self.scale[lane] = ray.scale;
+    }
+
+    /// One of the rays, up to `end`.
+    #[inline(always)]
+    fn ray(&self, lane: usize, end: f32) -> NarrowRay {
+        let of = |v: &[Lane; 3]| [v[0][lane], v[1][lane], v[2][lane]];
+        NarrowRay {
+            origin: of(&self.origin),
+            origin_rest: of(&self.origin_rest),
+            direction: of(&self.direction),
+            inverse: of(&self.inverse),
+            enter_offset: of(&self.enter_offset),
+            leave_offset: of(&self.leave_offset),
+            margin: self.margin[lane],
+            origin_error: self.origin_error[lane],
+            end,
+            start: self.start[lane],
+            scale: self.scale[lane],
+        }
+    }
+
+    /// The parameter of a t of a ray; see [`NarrowRay::up_to`].
+    #[inline(always)]
+    pub(crate) fn up_to(&self, lane: usize, t: f64) -> f32 {
+        let s = t * self.scale[lane] - self.start[lane];
+        let s = (s as f32).max(0.0) * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.origin_error[lane];
+        s.min(self.end[lane])
+    }
+
+    /// The ends of the rays of a group; the others are done with.
+    #[inline(always)]
+    pub(crate) fn ends_of(&self, group: u32) -> Lane {
+        let mut ends = self.end;
+        for (lane, end) in ends.iter_mut().enumerate() {
+            *end = if group >> lane & 1 == 1 { *end } else { DONE };
+        }
+        ends
+    }
+
+    /// Takes from `open` a group of rays whose directions have the same signs: which, and which axes they go down.
+    #[inline(always)]
+    pub(crate) fn octant(&self, open: &mut u32) -> Option<(u32, [bool; 3])> {
+        if *open == 0 {
+            return None;
+        }
+        let first = open.trailing_zeros() as usize;
+        let mut group = *open;
+        let mut backward = [false; 3];
+        for (backward, inverse) in backward.iter_mut().zip(&self.inverse) {
+            *backward = inverse[first] < 0.0;
+            let mut alike = 0;
+            for (lane, inverse) in inverse.iter().enumerate() {
+                alike |= u32::from((*inverse < 0.0) == *backward) << lane;
+            }
+            group &= alike;
+        }
+        *open &= !group;
+        Some((group, backward))
+    }
+}
+
+/// All rays of a group at once: the intervals of their origins and inverses.
+struct Beam {
+    /// By axis: 1 or -1, the sign of the directions.
+    sign: [f32; 3],
+    /// What is added to a plane's coordinate times `sign`: for the planes that the rays enter by, and leave by.
+    enter_offset: [f32; 3],
+    leave_offset: [f32; 3],
+    /// The least and the greatest 1 / direction, in size.
+    least: [f32; 3],
+    most: [f32; 3],
+}
+
+impl Beam {
+    #[inline(always)]
+    fn new(packet: &NarrowPacket, group: u32, backward: [bool; 3]) -> Self {
+        let mut beam = Self {
+            sign: [1.0; 3],
+            enter_offset: [0.0; 3],
+            leave_offset: [0.0; 3],
+            least: [f32::INFINITY; 3],
+            most: [0.0; 3],
+        };
+        let mut margin: f32 = 0.0;
+        for lane in 0..LANES {
+            if group >> lane & 1 == 1 {
+                margin = margin.max(packet.margin[lane]);
+            }
+        }
+        // A ray's margin holds for its own slab test; half of it more, for those below.
+        margin *= 1.5;
+        for (axis, backward) in backward.into_iter().enumerate() {
+            let sign = if backward { -1.0 } else { 1.0 };
+            let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+            for lane in 0..LANES {
+                if group >> lane & 1 == 1 {
+                    let (origin, inverse) =
+                        (packet.origin[axis][lane] * sign, packet.inverse[axis][lane] * sign);
+                    low = low.min(origin);
+                    high = high.max(origin);
+                    beam.least[axis] = beam.least[axis].min(inverse);
+                    beam.most[axis] = beam.most[axis].max(inverse);
+                }
+            }
+            beam.sign[axis] = sign;
+            beam.enter_offset[axis] = -(high + margin);
+            beam.leave_offset[axis] = margin - low;
+        }
+        beam
+    }
+}
+
+/// Who is shown what rays meet. A trait and not a closure, since vector code must be inlined.
+pub(crate) trait Visitor {
+    /// Where this many rays or fewer meet a child that is no leaf, they are to go on from there one by one.
+    const ALONE: u32;
+
+    /// Some rays meet a leaf; or a few meet any child. May lower their ends; a ray whose end is [`DONE`] is not asked
+    /// for again.
+    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane);
+}
+
+/// A box to look into: a child of a node, by its place there.
+#[derive(Clone, Copy)]
+struct Waiting {
+    child: Child,
+    node: u32,
+    place: u32,
+    /// No ray enters it sooner.
+    enter: f32,
+}
+
+/// Shows a visitor what the rays of a group meet.
+#[inline(always)]
+pub(crate) fn walk_packet<S: Simd, V: Visitor>(
+    simd: S,
+    nodes: &[WideNode],
+    packet: &NarrowPacket,
+    group: u32,
+    backward: [bool; 3],
+    end: &mut Lane,
+    visitor: &mut V,
+) {
+    let beam = Beam::new(packet, group, backward);
+    let mut stack = ArrayVec::<Waiting, STACK>::new();
+    let mut furthest = furthest(simd, end);
+    let mut node = 0;
+    loop {
+        let waiting = stack.len();
+        let (enter, mut met) = beam_meets(simd, &nodes[node], &beam, furthest);
+        while met != 0 {
+            let place = met.trailing_zeros();
+            met &= met - 1;
+            let child = nodes[node].children[place as usize];
+            stack.push(Waiting { child, node: node as u32, place, enter: enter[place as usize] });
+            // The children of one node wait in order, the nearest last; there are few of them.
+            let mut at = stack.len() - 1;
+            while at > waiting && stack[at - 1].enter < stack[at].enter {
+                stack.swap(at - 1, at);
+                at -= 1;
+            }
+        }
+        loop {
+            let Some(next) = stack.pop() else { return };
+            if next.enter > furthest {
+                continue;
+            }
+            let lanes = group
+                & rays_that_meet(
+                    simd,
+                    packet,
+                    &nodes[next.node as usize],
+                    next.place as usize,
+                    backward,
+                    end,
+                );
+            if lanes == 0 {
+                continue;
+            }
+            if next.child.is_leaf() || lanes.count_ones() <= V::ALONE {
+                visitor.visit(next.child, lanes, end);
+                furthest = self::furthest(simd, end);
+                if furthest < 0.0 {
+                    return;
+                }
+            } else {
+                node = next.child.node();
+                break;
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn furthest<S: Simd>(simd: S, end: &Lane) -> f32 {
+    f32x16::load_array_ref(simd, end).reduce_max()
+}
+
+/// Where the rays enter each box at the soonest, and which boxes some of them may meet.
+#[inline(always)]
+fn beam_meets<S: Simd>(simd: S, node: &WideNode, beam: &Beam, furthest: f32) -> ([f32; 8], u32) {
+    let splat = |x: f32| f32x8::splat(simd, x);
+    let mut enter = splat(0.0);
+    let mut leave = splat(furthest);
+    for axis in 0..3 {
+        let (near, far) = match beam.sign[axis] < 0.0 {
+            true => (&node.max[axis], &node.min[axis]),
+            false => (&node.min[axis], &node.max[axis]),
+        };
+        let sign = splat(beam.sign[axis]);
+        let near = f32x8::load_array_ref(simd, near).mul_add(sign, splat(beam.enter_offset[axis]));
+        let far = f32x8::load_array_ref(simd, far).mul_add(sign, splat(beam.leave_offset[axis]));
+        let (least, most) = (splat(beam.least[axis]), splat(beam.most[axis]));
+        enter = enter.max((near * least).min(near * most));
+        leave = leave.min((far * least).max(far * most));
+    }
+    (enter.into(), enter.simd_le(leave).to_bitmask() as u32)
+}
+
+/// Which rays meet a box.
+#[inline(always)]
+fn rays_that_meet<S: Simd>(
+    simd: S,
+    packet: &NarrowPacket,
+    node: &WideNode,
+    place: usize,
+    backward: [bool; 3],
+    end: &Lane,
+) -> u32 {
+    let mut enter = f32x16::splat(simd, 0.0);
+    let mut leave = f32x16::load_array_ref(simd, end);
+    for (axis, backward) in backward.into_iter().enumerate() {
+        let (near, far) = match backward {
+            true => (node.max[axis][place], node.min[axis][place]),
+            false => (node.min[axis][place], node.max[axis][place]),
+        };
+        let inverse = f32x16::load_array_ref(simd, &packet.inverse[axis]);
+        let enter_offset = f32x16::load_array_ref(simd, &packet.enter_offset[axis]);
+        let leave_offset = f32x16::load_array_ref(simd, &packet.leave_offset[axis]);
+        enter = enter.max(f32x16::splat(simd, near).mul_add(inverse, enter_offset));
+        leave = leave.min(f32x16::splat(simd, far).mul_add(inverse, leave_offset));
+    }
+    enter.simd_le(leave).to_bitmask() as u32
+}
+
+/// What the rays do with one triangle; see [`super::block::Verdict`].
+struct Verdict<S: Simd> {
+    maybe: u32,
+    sure: u32,
+    numerator: f32x16<S>,
+    numerator_error: f32x16<S>,
+    denominator: f32x16<S>,
+    denominator_error: f32x16<S>,
+}
+
+impl<S: Simd> Verdict<S> {
+    /// Where each ray that may hit the triangle hits it at the soonest, and each that does for sure at the latest.
+    #[inline(always)]
+    fn range(&self, simd: S) -> (Lane, Lane) {
+        let splat = |x: f32| f32x16::splat(simd, x);
+        let low = (self.numerator - self.numerator_error).max(splat(0.0));
+        let earliest = low / (self.denominator + self.denominator_error) * (1.0 - 4.0 * UNIT_ROUNDOFF);
+        let known = self.denominator.simd_gt(self.denominator_error);
+        let latest = (self.numerator + self.numerator_error) / (self.denominator - self.denominator_error)
+            * (1.0 + 4.0 * UNIT_ROUNDOFF);
+        (known.select(earliest, splat(0.0)).into(), latest.into())
+    }
+}
+
+/// Tests the rays against a triangle, for hits with `s` in (0, `end`). As [`Block::test`], with rays for lanes.
+#[inline(always)]
+fn test<S: Simd>(
+    simd: S,
+    packet: &NarrowPacket,
+    block: &Block,
+    triangle: usize,
+    lanes: u32,
+    end: &Lane,
+) -> Verdict<S> {
+    let splat = |x: f32| f32x16::splat(simd, x);
+    let corner = |c: usize| {
+        let corner = &block.corners[c];
+        [corner[0][triangle], corner[1][triangle], corner[2][triangle]]
+    };
+    let a: [f32x16<S>; 3] = splat3(simd, corner(0));
+    let (e1, e2) = (sub(splat3(simd, corner(1)), a), sub(splat3(simd, corner(2)), a));
+    let direction: [f32x16<S>; 3] = load3(simd, &packet.direction);
+    let from_a = add(sub(load3(simd, &packet.origin), a), load3(simd, &packet.origin_rest));
+    let p = cross(direction, e2);
+    let q = cross(from_a, e1);
+    let determinant = dot(e1, p);
+    // Everything is turned so that the determinant is positive.
+    let flip = determinant.simd_lt(splat(0.0));
+    let turn = |x: f32x16<S>| flip.select(-x, x);
+    let denominator = turn(determinant);
+    let (u, v, numerator) = (turn(dot(from_a, p)), turn(dot(direction, q)), turn(dot(e2, q)));
+
+    // The errors are those of `Block::test`.
+    let edge = largest(e1).max(largest(e2));
+    let reach = largest(from_a);
+    let origin_error = f32x16::load_array_ref(simd, &packet.origin_error);
+    let end = f32x16::load_array_ref(simd, end);
+    let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + origin_error * 8.0) + UNDERFLOW;
+    let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
+    let numerator_error = error * edge + UNDERFLOW;
+    let sum_error = error * 3.0 + denominator_error * 2.0;
+    let rest = denominator - u - v;
+    let limit = denominator * end;
+    let limit_error = denominator_error * end + limit * (8.0 * UNIT_ROUNDOFF) + numerator_error;
+
+    let in_reach = |value: f32x16<S>, error: f32x16<S>| value.simd_ge(-error);
+    let beyond = |value: f32x16<S>, error: f32x16<S>| value.simd_gt(error);
+    let maybe = in_reach(u, error)
+        & in_reach(v, error)
+        & in_reach(rest, sum_error)
+        & in_reach(numerator, numerator_error)
+        & in_reach(limit - numerator, limit_error)
+        | denominator.simd_le(denominator_error);
+    let sure = beyond(u, error)
+        & beyond(v, error)
+        & beyond(rest, sum_error)
+        & beyond(numerator, numerator_error)
+        & beyond(limit - numerator, limit_error)
+        & beyond(denominator, denominator_error);
+    let maybe = maybe.to_bitmask() as u32 & lanes;
+    Verdict {
+        maybe,
+        sure: sure.to_bitmask() as u32 & maybe,
+        numerator,
+        numerator_error,
+        denominator,
+        denominator_error,
+    }
+}
+
+/// The nearest hits of the rays `wanted`, and which rays are left to be searched one by one.
+#[inline(always)]
+pub(super) fn intersect<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    rays: &RayPacket,
+    wanted: u32,
+) -> ([Option<Hit>; LANES], u32) {
+    let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
+    let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
+    let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
+    let mut hits = [None; LANES];
+    while let Some((group, backward)) = packet.octant(&mut open) {
+        if group.count_ones() <= ALONE {
+            left_over |= group;
+            continue;
+        }
+        let mut end = packet.ends_of(group);
+        walk_packet(simd, &tree.nodes, packet, group, backward, &mut end, &mut search);
+        left_over |= search.left_over;
+        for lane in bits(group & !search.left_over) {
+            let candidates = &mut search.candidates[lane];
+            if !candidates.is_empty() {
+                let ray = rays.ray(lane);
+                let mut nearest = Nearest::new(&ray);
+                candidates.settle(tree, &mut nearest, end[lane]);
+                hits[lane] = nearest.found();
+            }
+        }
+    }
+    (hits, left_over)
+}
+
+/// A search for nearest hits on its way.
+struct NearestSearch<'a, S: Simd> {
+    simd: S,
+    tree: &'a TriangleTree,
+    packet: &'a NarrowPacket,
+    candidates: [Candidates; LANES],
+    /// Rays that had no room for all of theirs.
+    left_over: u32,
+}
+
+impl<S: Simd> Visitor for NearestSearch<'_, S> {
+    const ALONE: u32 = ALONE;
+
+    #[inline(always)]
+    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane) {
+        if few(child, lanes) {
+            for lane in bits(lanes) {
+                self.go_alone(child, lane, &mut end[lane]);
+            }
+            return;
+        }
+        for i in 0..child.count() {
+            let (block, triangle) = (child.first() + i / BLOCK, i % BLOCK);
+            let verdict = test(self.simd, self.packet, &self.tree.blocks[block], triangle, lanes, end);
+            if verdict.maybe == 0 {
+                continue;
+            }
+            let (earliest, latest) = verdict.range(self.simd);
+            for lane in bits(verdict.maybe) {
+                let latest = (verdict.sure >> lane & 1 == 1).then_some(latest[lane]);
+                let (block, triangle) = (block as u32, triangle as u32);
+                let candidate = Candidate { block, triangle, earliest: earliest[lane] };
+                self.add(lane, candidate, latest, &mut end[lane]);
+            }
+        }
+    }
+}
+
+impl<S: Simd> NearestSearch<'_, S> {
+    #[inline(always)]
+    fn go_alone(&mut self, child: Child, lane: usize, end: &mut f32) {
+        let ray = self.packet.ray(lane, *end);
+        let block_ray = BlockRay::new(self.simd, &ray);
+        let (simd, nodes) = (self.simd, &self.tree.nodes);
+        let mut visitor = Alone { search: self, block_ray, lane, end };
+        walk_from::<S, true>(simd, nodes, child, &ray, &Uncounted, &mut visitor);
+    }
+
+    #[inline]
+    fn add(&mut self, lane: usize, candidate: Candidate, latest: Option<f32>, end: &mut f32) {
+        if !self.candidates[lane].add(candidate, latest, end) {
+            self.left_over |= 1 << lane;
+            *end = DONE;
+        }
+    }
+}
+
+/// One ray that goes on by itself.
+struct Alone<'a, 't, S: Simd> {
+    search: &'a mut NearestSearch<'t, S>,
+    block_ray: BlockRay<S>,
+    lane: usize,
+    end: &'a mut f32,
+}
+
+impl<S: Simd> LeafVisitor for Alone<'_, '_, S> {
+    #[inline(always)]
+    fn leaf(&mut self, leaf: Child) -> f32 {
+        let NearestSearch { simd, tree, .. } = *self.search;
+        add_leaf(simd, tree, &self.block_ray, leaf, self.end, |candidate, latest, end| {
+            self.search.add(self.lane, candidate, latest, end);
+        });
+        *self.end
+    }
+}
+
+/// Which of the rays `wanted` meet anything, and which are left to be searched one by one.
+#[inline(always)]
+pub(super) fn occluded<S: Simd>(simd: S, tree: &TriangleTree, rays: &RayPacket, wanted: u32) -> (u32, u32) {
+    let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
+    let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
+    let mut search = OcclusionSearch { simd, tree, packet, rays, occluded: 0 };
+    while let Some((group, backward)) = packet.octant(&mut open) {
+        if group.count_ones() <= ALONE {
+            left_over |= group;
+            continue;
+        }
+        let mut end = packet.ends_of(group);
+        walk_packet(simd, &tree.nodes, packet, group, backward, &mut end, &mut search);
+    }
+    (search.occluded, left_over)
+}
+
+/// A search for any hits on its way.
+struct OcclusionSearch<'a, S> {
+    simd: S,
+    tree: &'a TriangleTree,
+    packet: &'a NarrowPacket,
+    rays: &'a RayPacket,
+    occluded: u32,
+}
+
+impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
+    const ALONE: u32 = ALONE;
+
+    #[inline(always)]
+    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane) {
+        let mut occluded = 0;
+        if few(child, lanes) {
+            for lane in bits(lanes) {
+                let (narrow, ray) = (self.packet.ray(lane, end[lane]), self.rays.ray(lane));
+                let hit = single::occluded(self.simd, self.tree, child, &ray, &narrow, &Uncounted);
+                occluded |= u32::from(hit) << lane;
+            }
+        } else {
+            for i in 0..child.count() {
+                let (block, triangle) = (&self.tree.blocks[child.first() + i / BLOCK], i % BLOCK);
+                let verdict = test(self.simd, self.packet, block, triangle, lanes & !occluded, end);
+                occluded |= verdict.sure;
+                for lane in bits(verdict.maybe & !verdict.sure) {
+                    let meets = Canonical::new(&self.rays.ray(lane)).hits(&block.triangle(triangle));
+                    occluded |= u32::from(meets) << lane;
+                }
+            }
+        }
+        self.occluded |= occluded;
+        for lane in bits(occluded) {
+            end[lane] = DONE;
+        }
+    }
+}
+
+/// Whether so many rays go on one by one: a leaf of more triangles than rays is sooner tested a ray at a time.
+#[inline(always)]
+fn few(child: Child, lanes: u32) -> bool {
+    !child.is_leaf() || (lanes.count_ones() as usize) < child.count()
+}
+
+/// The places of the bits of a mask.
+#[inline(always)]
+pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let next = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (next < LANES).then_some(next)
+    })
+}
