@@ -7,7 +7,7 @@ use super::{Plan, lancer_side};
 use crate::Failure;
 use crate::embree::ffi::{Build, Device, Quality, Scene};
 use crate::record::{Ratio, median, seconds};
-use lancer_core::geometry::{DirectionFan, Ray};
+use lancer_core::geometry::{DirectionFan, Ray, RayPacket};
 use lancer_core::render::with_threads;
 use lancer_core::world::{CompileOptions, Hit, Intersection, World};
 use rayon::prelude::*;
@@ -16,14 +16,14 @@ use std::sync::Arc;
 
 /// Rays that one call of Lancer gets.
 const CHUNK: usize = 1024;
-/// Points that one call of Lancer gets.
+/// Points, or packets, that one call of Lancer gets.
 const FANS: usize = 64;
 
 pub(super) const HEADING: &str =
     "\nRays, millions a second. Ratios are Lancer's to Embree's, medians over the runs \
 (least..most).\n
-| scene | kind | threads | Lancer | Embree, 1 ray | ratio | Embree's best | its form | ratio |
-|---|---|---:|---:|---:|---:|---:|---|---:|";
+| scene | kind | threads | Lancer, 1 ray | Embree, 1 ray | ratio | Lancer, together | Embree's best | its form | ratio |
+|---|---|---:|---:|---:|---:|---:|---:|---|---:|";
 
 /// Embree's scenes of a stage: as it is by default, and otherwise.
 struct Scenes {
@@ -67,7 +67,8 @@ pub(super) fn measure(stage: &Stage, device: &Arc<Device>, plan: &Plan) -> Resul
 
 /// Millions of rays a second, one entry a run.
 struct Rates {
-    lancer: Vec<f64>,
+    alone: Vec<f64>,
+    together: Vec<f64>,
     forms: Vec<(Form, Vec<f64>)>,
     /// The best form on scenes that were built otherwise.
     others: Vec<(&'static str, Vec<f64>)>,
@@ -77,13 +78,15 @@ impl Rates {
     /// Takes turns: Lancer, then each form of Embree, and again.
     fn measure(world: &World, scenes: &Scenes, lot: &Lot, prepared: &Prepared, runs: usize) -> Self {
         let mut rates = Self {
-            lancer: Vec::new(),
+            alone: Vec::new(),
+            together: Vec::new(),
             forms: Form::all(lot).into_iter().map(|form| (form, Vec::new())).collect(),
             others: scenes.others.iter().map(|(name, _)| (*name, Vec::new())).collect(),
         };
         let rate = |seconds: f64| lot.rays.len() as f64 / seconds / 1e6;
         for _ in 0..runs {
-            rates.lancer.push(rate(seconds(|| std::hint::black_box(trace(world, lot))).0));
+            rates.alone.push(rate(seconds(|| std::hint::black_box(trace_alone(world, lot))).0));
+            rates.together.push(rate(seconds(|| std::hint::black_box(trace(world, lot))).0));
             for (form, values) in &mut rates.forms {
                 values.push(rate(seconds(|| std::hint::black_box(prepared.trace(&scenes.high, *form))).0));
             }
@@ -107,15 +110,16 @@ impl Rates {
     fn row(&self, stage: &Stage, lot: &Lot, threads: usize) -> String {
         let (best, single) = (self.best(), self.forms[0].0);
         format!(
-            "| {} | {} | {threads} | {:.2} | {:.2} | {} | {:.2} | {} | {} |",
+            "| {} | {} | {threads} | {:.2} | {:.2} | {} | {:.2} | {:.2} | {} | {} |",
             stage.name,
             lot.kind.name(),
-            median(&self.lancer),
+            median(&self.alone),
             median(self.of(single)),
-            Ratio::of(&self.lancer, self.of(single)),
+            Ratio::of(&self.alone, self.of(single)),
+            median(&self.together),
             median(self.of(best)),
             best.name(lot),
-            Ratio::of(&self.lancer, self.of(best)),
+            Ratio::of(&self.together, self.of(best)),
         )
     }
 
@@ -142,13 +146,15 @@ impl Rates {
             "kind": lot.kind.name(),
             "rays": lot.rays.len(),
             "threads": threads,
-            "lancer_mrays": self.lancer,
+            "lancer_alone_mrays": self.alone,
+            "lancer_together_mrays": self.together,
             "embree_mrays": forms,
         })
     }
 }
 
-/// Traces a lot on the threads of the current pool. Returns how many rays met something.
+/// Traces a lot on the threads of the current pool, the rays of a point or of a block of pixels together. Returns how
+/// many rays met something.
 pub(super) fn trace(world: &World, lot: &Lot) -> usize {
     if !lot.fans.is_empty() {
         let count = |blocked: &mut Vec<bool>, fans: &[(Intersection, DirectionFan)]| {
@@ -157,6 +163,24 @@ pub(super) fn trace(world: &World, lot: &Lot) -> usize {
         };
         return lot.fans.par_chunks(FANS).map_init(Vec::new, count).sum();
     }
+    let chunks = lot.packets.par_chunks(FANS);
+    if lot.kind.is_occlusion() {
+        let count = |blocked: &mut Vec<bool>, packets: &[(RayPacket, u32)]| {
+            lancer_side::occluded_packets(world, packets, blocked);
+            blocked.iter().filter(|blocked| **blocked).count()
+        };
+        chunks.map_init(Vec::new, count).sum()
+    } else {
+        let count = |hits: &mut Vec<Option<Hit>>, packets: &[(RayPacket, u32)]| {
+            lancer_side::intersect_packets(world, packets, hits);
+            hits.iter().flatten().count()
+        };
+        chunks.map_init(Vec::new, count).sum()
+    }
+}
+
+/// As [`trace`], ray by ray.
+fn trace_alone(world: &World, lot: &Lot) -> usize {
     let chunks = lot.rays.par_chunks(CHUNK);
     if lot.kind.is_occlusion() {
         let count = |blocked: &mut Vec<bool>, rays: &[Ray]| {
@@ -189,14 +213,14 @@ impl Difference {
         let ours: Vec<Option<Met>> = if lot.kind.is_occlusion() {
             let mut blocked = Vec::new();
             if lot.fans.is_empty() {
-                lancer_side::occluded(world, &lot.rays, &mut blocked);
+                lancer_side::occluded_packets(world, &lot.packets, &mut blocked);
             } else {
                 lancer_side::occluded_fans(world, &lot.fans, lot.reach, &mut blocked);
             }
             blocked.iter().map(|blocked| blocked.then_some(Met { t: 0.0, object: 0, primitive: 0 })).collect()
         } else {
             let mut hits = Vec::new();
-            lancer_side::intersect(world, &lot.rays, &mut hits);
+            lancer_side::intersect_packets(world, &lot.packets, &mut hits);
             let met = |hit: &Hit| Met {
                 t: hit.t as f32,
                 object: hit.object.index() as u32,

@@ -1,6 +1,6 @@
 //! Lancer's side of the comparison by ray kind.
 
-use lancer_core::geometry::{DirectionFan, Ray};
+use lancer_core::geometry::{DirectionFan, Ray, RayPacket};
 use lancer_core::world::{Hit, Intersection, World};
 
 /// Finds the nearest hit of each ray. `hits` is emptied first; its memory is used again.
@@ -13,6 +13,27 @@ pub(super) fn intersect(world: &World, rays: &[Ray], hits: &mut Vec<Option<Hit>>
 pub(super) fn occluded(world: &World, rays: &[Ray], blocked: &mut Vec<bool>) {
     blocked.clear();
     blocked.extend(rays.iter().map(|ray| world.occluded(ray)));
+}
+
+/// Finds the nearest hit of each ray of each packet; see [`intersect`].
+pub(super) fn intersect_packets(world: &World, packets: &[(RayPacket, u32)], hits: &mut Vec<Option<Hit>>) {
+    hits.clear();
+    for (rays, wanted) in packets {
+        let found = world.intersect_packet(rays, *wanted);
+        hits.extend(
+            found.into_iter().enumerate().filter(|(lane, _)| wanted >> lane & 1 == 1).map(|(_, hit)| hit),
+        );
+    }
+}
+
+/// Finds whether each ray of each packet meets anything; see [`occluded`].
+pub(super) fn occluded_packets(world: &World, packets: &[(RayPacket, u32)], blocked: &mut Vec<bool>) {
+    blocked.clear();
+    for (rays, wanted) in packets {
+        let occluded = world.occluded_packet(rays, *wanted);
+        let lanes = (0..RayPacket::LANES).filter(|lane| wanted >> lane & 1 == 1);
+        blocked.extend(lanes.map(|lane| occluded >> lane & 1 == 1));
+    }
 }
 
 /// Finds whether each ray of each point meets anything. `blocked` is emptied first; its memory is used again.

@@ -3,14 +3,14 @@
 use super::directions;
 use super::stage::{HEIGHT, Stage, WIDTH};
 use crate::Failure;
-use lancer_core::geometry::{DVec3, DirectionFan, Ray};
+use lancer_core::geometry::{DVec3, DirectionFan, Ray, RayPacket};
 use lancer_core::sampling::HemisphereLattice;
 use lancer_core::shade::reflect;
 use lancer_core::world::{Intersection, World};
 use rayon::prelude::*;
 
 /// Rays of a packet.
-pub(super) const LANES: usize = 16;
+pub(super) const LANES: usize = RayPacket::LANES;
 /// No ray in this lane.
 pub(super) const EMPTY: u32 = u32::MAX;
 
@@ -48,6 +48,8 @@ pub(super) struct Lot {
     /// In the order of tiles of 8 x 8 pixels, each of four blocks of 4 x 4.
     pub(super) rays: Vec<Ray>,
     pub(super) groupings: Vec<(&'static str, Vec<Packet>)>,
+    /// The same rays by blocks of pixels, as Lancer takes them, and the lanes that are used; for kinds that have no fans.
+    pub(super) packets: Vec<(RayPacket, u32)>,
     /// The same rays by the point that they leave, for kinds that have many of one.
     pub(super) fans: Vec<(Intersection, DirectionFan)>,
     pub(super) reach: f64,
@@ -140,9 +142,22 @@ fn secondary(kind: Kind, seen: &[Option<Seen>], ray: impl Fn(&Seen) -> Ray) -> L
 
 impl Lot {
     fn new(kind: Kind, rays: Vec<Ray>, packets: Vec<Packet>) -> Self {
+        let filled = packets.iter().map(|packet| filled(&rays, packet)).collect();
         let groupings = vec![("4x4 pixels", packets)];
-        Self { kind, rays, groupings, fans: Vec::new(), reach: f64::INFINITY }
+        Self { kind, rays, groupings, packets: filled, fans: Vec::new(), reach: f64::INFINITY }
     }
+}
+
+/// The rays of a packet, and the lanes that are used.
+fn filled(rays: &[Ray], packet: &Packet) -> (RayPacket, u32) {
+    let first = packet.iter().find(|&&lane| lane != EMPTY).map_or(0, |&ray| ray as usize);
+    let mut filled = RayPacket::splat(&rays[first]);
+    let mut wanted = 0;
+    for (lane, &ray) in packet.iter().enumerate().filter(|&(_, &ray)| ray != EMPTY) {
+        filled.set(lane, &rays[ray as usize]);
+        wanted |= 1 << lane;
+    }
+    (filled, wanted)
 }
 
 impl Seen {
@@ -203,7 +218,7 @@ fn ambient_occlusion(seen: &[Option<Seen>], reach: f64) -> Lot {
     }
     let groupings =
         vec![("one point", of_one_point), ("4x4 same index", same_index), ("8x8 by direction", by_direction)];
-    Lot { kind: Kind::AmbientOcclusion, rays, groupings, fans, reach }
+    Lot { kind: Kind::AmbientOcclusion, rays, groupings, packets: Vec::new(), fans, reach }
 }
 
 /// As many full packets as there are, and a last one.

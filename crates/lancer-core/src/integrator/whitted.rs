@@ -294,7 +294,6 @@ struct Arrival<'a> {
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
         let mut radiances = [Rgb::BLACK; LANES];
-        let mut rays = first.packet.clone();
         let mut paths = first.keys.map(|key| Path {
             kind: RayKind::Primary,
             throughput: Rgb::WHITE,
@@ -302,13 +301,10 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             key,
             media: media.clone(),
         });
-        let mut wanted = first.lanes();
-        for id in 0.. {
-            if wanted == 0 || self.integrator.cancel.is_cancelled() {
-                break;
-            }
-            self.step(RayId(id), &rays, wanted, &paths, &mut radiances);
-            wanted = 0;
+        self.step(RayId(0), &first.packet, first.lanes(), &paths, &mut radiances);
+        let mut rays = first.packet.clone();
+        for id in 1.. {
+            let mut wanted = 0;
             for (lane, pending) in self.pending.iter_mut().enumerate() {
                 if let Some(PendingRay { ray, path }) = pending.pop_front() {
                     rays.set(lane, &ray);
@@ -316,8 +312,15 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
                     wanted |= 1 << lane;
                 }
             }
+            if wanted == 0 {
+                break;
+            }
+            if self.integrator.cancel.is_cancelled() {
+                self.pending.iter_mut().for_each(VecDeque::clear);
+                break;
+            }
+            self.step(RayId(id), &rays, wanted, &paths, &mut radiances);
         }
-        self.pending.iter_mut().for_each(VecDeque::clear);
         radiances
     }
 
@@ -340,6 +343,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     ) {
         let world = self.integrator.world;
         let hits = self.integrator.intersect(rays, wanted, self.tally);
+        world.fetch(&hits);
         let mut arrivals = ArrayVec::<Arrival, LANES>::new();
         for lane in bits(wanted) {
             let (path, ray) = (&paths[lane], rays.ray(lane));

@@ -40,12 +40,18 @@ impl Intersection {
         let ray_in_object = placement.ray_to_object(ray);
         let local_hit = shape::Hit { t: hit.t, primitive: hit.primitive };
         let surface = object.geometry.surface(&ray_in_object, &local_hit, &world.meshes);
+        let geometric_normal = placement.normal_to_world(surface.geometric_normal);
+        // Most often they are one.
+        let shading_normal = match surface.shading_normal == surface.geometric_normal {
+            true => geometric_normal,
+            false => placement.normal_to_world(surface.shading_normal),
+        };
         Self {
             t: hit.t,
             point: placement.point_to_world(surface.point),
             point_error: placement.error_in_world(surface.point, surface.point_error),
-            geometric_normal: placement.normal_to_world(surface.geometric_normal),
-            shading_normal: placement.normal_to_world(surface.shading_normal),
+            geometric_normal,
+            shading_normal,
             uv: surface.uv,
             vertex_color: surface.vertex_color,
             object: hit.object,

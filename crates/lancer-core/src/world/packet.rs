@@ -6,8 +6,9 @@ use crate::accel::Uncounted;
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, bits, walk_packet};
 use crate::geometry::RayPacket;
-use crate::shape;
+use crate::shape::{self, sphere};
 use fearless_simd::dispatch;
+use std::hint::black_box;
 
 const LANES: usize = RayPacket::LANES;
 
@@ -35,6 +36,16 @@ impl World {
             best[lane] = self.intersect(&rays.ray(lane));
         }
         best
+    }
+
+    /// Reads the corners of the triangles that were hit: memory then answers for all of them together, where surfaces
+    /// that are found one by one would wait for each.
+    pub(crate) fn fetch(&self, hits: &[Option<Hit>; LANES]) {
+        for hit in hits.iter().flatten() {
+            if let Geometry::Mesh(mesh) = self.object(hit.object).geometry {
+                black_box(self.meshes[mesh as usize].mesh.vertices(hit.primitive));
+            }
+        }
     }
 
     /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells.
@@ -133,10 +144,18 @@ impl Geometry {
             return tree.intersect_packet(rays, wanted);
         }
         let mut hits = [None; LANES];
-        for lane in bits(wanted) {
+        for lane in bits(wanted & self.may_meet(rays)) {
             hits[lane] = self.intersect(&rays.ray(lane), &world.meshes, &Uncounted);
         }
         hits
+    }
+
+    /// The rays that a quick look at all of them together does not rule out.
+    fn may_meet(self, rays: &RayPacket) -> u32 {
+        match self {
+            Self::Sphere => sphere::may_meet(rays),
+            _ => u32::MAX,
+        }
     }
 
     fn occluded_packet(self, rays: &RayPacket, wanted: u32, world: &World) -> u32 {
@@ -145,7 +164,7 @@ impl Geometry {
         {
             return tree.occluded_packet(rays, wanted);
         }
-        bits(wanted)
+        bits(wanted & self.may_meet(rays))
             .filter(|&lane| self.occluded(&rays.ray(lane), &world.meshes, &Uncounted))
             .fold(0, |hit, lane| hit | 1 << lane)
     }
