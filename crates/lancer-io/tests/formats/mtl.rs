@@ -3,7 +3,7 @@
 use crate::common::{Files, first_line};
 use crate::obj::{SQUARE, obj};
 use lancer_core::Rgb;
-use lancer_core::scene::Texture;
+use lancer_core::scene::{Texture, Wrap};
 use std::fs;
 
 /// A 24-bit BMP of one blue pixel.
@@ -40,7 +40,9 @@ fn textures_are_found_beside_the_library() {
         "/art/blue sky.bmp",
     ] {
         let model = textured(name).with("blue sky.bmp", blue_bmp()).load("m.obj").unwrap();
-        let Texture::Image(image) = &model.materials[0].color else { panic!("{name}: {:?}", model.warnings) };
+        let Texture::Image { image, .. } = &model.materials[0].color else {
+            panic!("{name}: {:?}", model.warnings)
+        };
         assert_eq!((image.width(), image.height()), (1, 1));
         assert_eq!(model.materials[0].diffuse, Rgb::new(0.0, 0.5, 0.0));
     }
@@ -59,6 +61,18 @@ fn options_of_a_map_move_the_texture_coordinates_of_its_material_alone() {
     assert!(model.warnings.is_empty(), "{:?}", model.warnings);
     assert_eq!(model.parts[0].mesh.data().uvs, [[1.5, 0.0]; 3]);
     assert_eq!(model.parts[1].mesh.data().uvs, [[0.5, 0.25]; 3]);
+}
+
+#[test]
+fn a_clamped_map_ends_in_its_outermost_pixels() {
+    let wrap_of = |map: &str| {
+        let model = textured(map).with("blue.bmp", blue_bmp()).load("m.obj").unwrap();
+        assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+        let Texture::Image { wrap, .. } = model.materials[0].color else { panic!("{map}") };
+        wrap
+    };
+    assert_eq!(wrap_of("-clamp on blue.bmp"), [Wrap::Clamp; 2]);
+    assert_eq!(wrap_of("-clamp off blue.bmp"), [Wrap::Repeat; 2]);
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Materials and their textures.
 
 use super::{data_uri, gltf, square, with};
-use crate::common::{Files, warnings_of};
+use crate::common::{Files, error_of, warnings_of};
 use lancer_core::Rgb;
-use lancer_core::scene::Texture;
+use lancer_core::scene::{Texture, Wrap};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -115,13 +115,34 @@ fn textures_come_from_uris_views_and_files_and_are_transformed() {
     for model in [gltf(&in_uri), gltf(&in_view), files.load("a.gltf")] {
         let model = model.unwrap();
         assert!(model.warnings.is_empty(), "{:?}", model.warnings);
-        let Texture::Image(image) = &model.materials[0].color else { panic!() };
+        let Texture::Image { image, .. } = &model.materials[0].color else { panic!() };
         assert_eq!(image.texels(), [[255, 0, 0], [255, 255, 0]]);
         assert!((model.materials[0].diffuse.r - 0.48).abs() < 1e-15);
         // (0, 1) is scaled to (0, 4), turned to (4, 0), moved to (4.5, 0.25); v is then counted upward.
         let [u, v] = model.parts[0].mesh.data().uvs[0];
         assert!((u - 4.5).abs() < 1e-6 && (v - 0.75).abs() < 1e-6, "{u} {v}");
     }
+}
+
+#[test]
+fn samplers_say_what_lies_beyond_an_image_along_each_axis() {
+    let base = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    let textured = with(square(), "/materials", base);
+    let textured = with(textured, "/meshes/0/primitives/0/material", json!(0));
+    let textured = with(textured, "/textures", json!([{"source": 0, "sampler": 0}]));
+    let textured = with(textured, "/images", json!([{"uri": data_uri(&red_png())}]));
+    for (sampler, expected) in [
+        (json!({}), [Wrap::Repeat, Wrap::Repeat]),
+        (json!({"wrapS": 33071, "wrapT": 33648}), [Wrap::Clamp, Wrap::Mirror]),
+        (json!({"wrapS": 10497, "wrapT": 33071}), [Wrap::Repeat, Wrap::Clamp]),
+    ] {
+        let model = gltf(&with(textured.clone(), "/samplers", json!([sampler]))).unwrap();
+        assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+        let Texture::Image { wrap, .. } = model.materials[0].color else { panic!() };
+        assert_eq!(wrap, expected);
+    }
+    let error = error_of(gltf(&textured));
+    assert_eq!(error, "a.gltf: /textures/0/sampler: is 0, but there are no samplers");
 }
 
 #[test]
