@@ -6,6 +6,8 @@
 mod exr;
 mod pfm;
 
+pub(super) use self::exr::check_sizes as exr_check_sizes;
+
 use super::decode::{decoder_limits, message_of};
 use super::{HDR_PROVENANCE, encode, exif};
 use crate::diagnostics::{Diagnostic, LoadError};
