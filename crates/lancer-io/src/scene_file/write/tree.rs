@@ -67,7 +67,7 @@ impl Writer<'_> {
         match wrap {
             [Wrap::Repeat, Wrap::Repeat] => file,
             [u, v] if u == v => mapping([("file", file), ("wrap", name(u))]),
-            axes => mapping([("file", file), ("wrap", list(axes.map(name).into_iter()))]),
+            axes => mapping([("file", file), ("wrap", list(axes.map(name)))]),
         }
     }
 
