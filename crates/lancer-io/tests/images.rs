@@ -4,6 +4,7 @@ use exr::prelude::read_first_rgba_layer_from_file;
 use lancer_core::Rgb;
 use lancer_core::film::{Image, Tone, to_srgb8};
 use lancer_core::geometry::DVec2;
+use lancer_core::scene::Wrap;
 use lancer_io::image::encode::{write, write_png};
 use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, load_texture};
 use lancer_io::limits::Limits;
@@ -32,7 +33,7 @@ fn load(directory: &Path, name: &str, bytes: &[u8]) -> Result<(u32, u32, Rgb), S
     fs::write(&path, bytes).unwrap();
     let resolver = Resolver::for_file(&path, false, Limits::default());
     let image = load_texture(&path, &resolver).map_err(|error| error.to_string())?;
-    Ok((image.width(), image.height(), image.color_at(DVec2::new(0.5, 0.5))))
+    Ok((image.width(), image.height(), image.color_at(DVec2::new(0.5, 0.5), [Wrap::Repeat; 2])))
 }
 
 fn png_of(color: png::ColorType, depth: png::BitDepth, palette: Option<&[u8]>, data: &[u8]) -> Vec<u8> {

@@ -3,8 +3,10 @@
 use lancer_core::film::{Image, Tone, ToneCurve};
 use lancer_io::image::encode::write;
 use lancer_io::image::{
-    Compression, Encoding, EncodingChoice, ImageFormat, Metadata, Picture, decode_picture, provenance_of,
+    Compression, Encoding, EncodingChoice, ImageFormat, Metadata, Picture, Window, decode_picture,
+    provenance_of,
 };
+use std::io::Cursor;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -31,6 +33,29 @@ fn described() -> Metadata {
         provenance: Some("{\"some\":\"text in ASCII\"}".into()),
         dpi: Some(300),
         ..Metadata::default()
+    }
+}
+
+#[test]
+fn an_exr_of_a_part_lies_where_it_does_in_the_whole() {
+    let image = picture(5, 3);
+    let window = Some(Window { x: 7, y: 2, width: 40, height: 30 });
+    for (metadata, position, whole) in
+        [(Metadata { window, ..described() }, (7, 2), (40, 30)), (described(), (0, 0), (5, 3))]
+    {
+        for bits in [16, 32] {
+            let bytes =
+                encoded(encoding(ImageFormat::Exr, Some(bits), None), &image, Tone::default(), &metadata);
+            let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), true).unwrap();
+            let [header] = meta.headers.as_slice() else { panic!("{} headers", meta.headers.len()) };
+            assert_eq!(header.own_attributes.layer_position, position.into());
+            assert_eq!(header.layer_size, (5, 3).into());
+            assert_eq!(header.shared_attributes.display_window.size, whole.into());
+            assert_eq!(header.shared_attributes.display_window.position, (0, 0).into());
+            let read = decode_picture(Path::new("a.exr"), &bytes, 100).unwrap();
+            assert_eq!((read.values.width(), read.values.height()), (5, 3));
+            assert!(bits == 16 || read.values == image);
+        }
     }
 }
 
@@ -205,17 +230,17 @@ fn the_resolution_is_in_every_format_that_has_one() {
     let image = picture(20, 10);
     let bytes_of = |format: ImageFormat| encoded(format, &image, Tone::default(), &described());
     let png = bytes_of(ImageFormat::Png);
-    let reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    let reader = png::Decoder::new(Cursor::new(&png)).read_info().unwrap();
     let dims = reader.info().pixel_dims.unwrap();
     assert_eq!((dims.xppu, dims.yppu, dims.unit), (11_811, 11_811, png::Unit::Meter));
     // JFIF, version 1.2, dots per inch, 300 x 300.
     assert!(bytes_of(ImageFormat::Jpeg)[6..].starts_with(b"JFIF\0\x01\x02\x01\x01\x2c\x01\x2c"));
     let tiff = bytes_of(ImageFormat::Tiff);
-    let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(&tiff)).unwrap();
+    let mut decoder = tiff::decoder::Decoder::new(Cursor::new(&tiff)).unwrap();
     assert_eq!(decoder.get_tag_u32(tiff::tags::Tag::ResolutionUnit).unwrap(), 2);
     assert_eq!(decoder.get_tag_u32_vec(tiff::tags::Tag::XResolution).unwrap(), [300, 1]);
     let exr = bytes_of(ImageFormat::Exr);
-    let meta = exr::meta::MetaData::read_from_buffered(std::io::Cursor::new(&exr), true).unwrap();
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&exr), true).unwrap();
     assert_eq!(meta.headers[0].own_attributes.horizontal_density, Some(300.0));
 }
 

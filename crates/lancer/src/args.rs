@@ -472,6 +472,10 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "P", default_value_t = PIXELS_PER_DEGREE, value_parser = parse_pixels_per_degree)]
     pub(crate) pixels_per_degree: f64,
 
+    /// Threads to work on; without it, one a core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_THREADS))]
+    pub(crate) threads: Option<u32>,
+
     /// Print a JSON object instead
     #[arg(long)]
     pub(crate) json: bool,

@@ -37,28 +37,27 @@ pub(crate) fn install() {
 /// Until the guard is dropped, the first request to stop cancels `token`, and the next one ends the program.
 #[must_use]
 pub(crate) fn cancels(token: &CancelToken) -> Guard {
-    set(Handling::CancelThenExit(token.clone()));
-    Guard(())
+    Guard(set(Handling::CancelThenExit(token.clone())))
 }
 
 /// Until the guard is dropped, requests to stop cancel `token` and do no more.
 #[must_use]
 pub(crate) fn only_cancels(token: &CancelToken) -> Guard {
-    set(Handling::Cancel(token.clone()));
-    Guard(())
+    Guard(set(Handling::Cancel(token.clone())))
 }
 
-/// Puts back what requests to stop do by default.
-pub(crate) struct Guard(());
+/// Puts back what requests to stop did before: a film's pictures are written amid its render.
+pub(crate) struct Guard(Handling);
 
 impl Drop for Guard {
     fn drop(&mut self) {
-        set(Handling::Exit);
+        set(self.0.clone());
     }
 }
 
-fn set(handling: Handling) {
-    *HANDLING.lock().unwrap_or_else(PoisonError::into_inner) = handling;
+/// Changes what a request to stop does, and returns what it did.
+fn set(handling: Handling) -> Handling {
+    std::mem::replace(&mut *HANDLING.lock().unwrap_or_else(PoisonError::into_inner), handling)
 }
 
 fn current() -> Handling {

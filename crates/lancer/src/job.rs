@@ -15,7 +15,7 @@ use lancer_core::render::{Control, Region, RenderError};
 use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
-use lancer_io::image::Metadata;
+use lancer_io::image::Encoding;
 use lancer_io::provenance::{Provenance, SceneHash, record_overrides};
 use std::ffi::OsStr;
 use std::num::NonZero;
@@ -78,24 +78,11 @@ impl Job {
         Ok(shot)
     }
 
-    /// What the file says of the picture beside its pixels.
-    pub(crate) fn metadata(&self, scene: &Scene, shot: &Shot) -> Metadata {
-        let (set, unrecorded) = record_overrides(&self.setup.load.overrides);
-        let record = Provenance {
-            lancer: Provenance::VERSION.to_owned(),
-            scene: self.setup.source.record(),
-            name: scene.name.clone(),
-            hash: SceneHash::of(scene, &shot.camera),
-            camera: self.setup.picture.camera.clone(),
-            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
-            render: shot.settings,
-            tone: shot.tone,
-            set,
-            unrecorded,
-            encoding: self.destination.encoding(),
-            dpi: self.dpi,
-        };
-        record.metadata()
+    /// How the picture was made.
+    pub(crate) fn record(&self, scene: &Scene, shot: &Shot) -> Provenance {
+        let hash = SceneHash::of(scene, &shot.camera);
+        let record = self.setup.record(scene, shot, hash, self.destination.encoding());
+        Provenance { dpi: self.dpi, ..record }
     }
 }
 
@@ -120,6 +107,33 @@ impl Setup {
             tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
             picture,
         })
+    }
+
+    /// How a picture of `scene` was made, which has this hash.
+    pub(crate) fn record(
+        &self,
+        scene: &Scene,
+        shot: &Shot,
+        hash: SceneHash,
+        encoding: Encoding,
+    ) -> Provenance {
+        let (set, unrecorded) = record_overrides(&self.load.overrides);
+        Provenance {
+            lancer: Provenance::VERSION.to_owned(),
+            scene: self.source.record(),
+            name: scene.name.clone(),
+            hash,
+            camera: self.picture.camera.clone(),
+            region: shot.region.map(|Region { x, y, width, height }| [x, y, width, height]),
+            render: shot.settings,
+            tone: shot.tone,
+            set,
+            unrecorded,
+            encoding,
+            dpi: None,
+            passes: Vec::new(),
+            pass: None,
+        }
     }
 
     /// Whether the scene is a bare model that nothing was changed of: then it is up to the program how it is shown.

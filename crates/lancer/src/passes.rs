@@ -9,8 +9,10 @@ use lancer_core::render::passes::{Layer, Pass, light_names, select};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_io::image::layers::{channel_names, write_layer, write_layers};
-use lancer_io::image::{Encoding, ImageFormat, Metadata};
+use lancer_io::image::{ImageFormat, encode};
+use lancer_io::provenance::Provenance;
 use serde::Serialize;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Bits of a float in a layer.
@@ -21,7 +23,6 @@ pub(crate) struct PassFiles {
     words: Vec<String>,
     separate: bool,
     path: PathBuf,
-    encoding: Encoding,
 }
 
 /// The passes of a scene that is known.
@@ -31,7 +32,6 @@ pub(crate) struct PassPlan {
     lights: Vec<String>,
     separate: bool,
     path: PathBuf,
-    encoding: Encoding,
 }
 
 impl PassFiles {
@@ -52,7 +52,7 @@ impl PassFiles {
                         "leave out --bits: layers have 32",
                     ));
                 }
-                Ok(Some(Self { words, separate, path: path.clone(), encoding: *encoding }))
+                Ok(Some(Self { words, separate, path: path.clone() }))
             }
             _ => Err(Error::usage_with_hint(
                 "passes are written to OpenEXR files alone",
@@ -75,7 +75,6 @@ impl PassFiles {
             lights: light_names(&scene.lights),
             separate: self.separate,
             path: self.path.clone(),
-            encoding: self.encoding,
         };
         if self.separate {
             for &pass in &plan.passes {
@@ -96,7 +95,8 @@ impl PassPlan {
         self.path.with_file_name(name)
     }
 
-    /// Writes the picture and its layers, each file whole or not at all.
+    /// Writes the picture and its layers, each file whole or not at all, and says in each how it was made, by the
+    /// record of the picture.
     ///
     /// # Errors
     /// One cannot be written, or the user asked to stop before it was.
@@ -104,22 +104,22 @@ impl PassPlan {
         &self,
         image: &Image,
         layers: &[Layer],
-        metadata: Metadata,
+        record: &Provenance,
         cancel: &CancelToken,
     ) -> Result<(), Error> {
-        // The record of how a picture was made is for files that hold it alone.
-        let metadata = Metadata { provenance: None, ..metadata };
-        let together = if self.separate { &[] } else { layers };
-        write_file(&self.path, cancel, |out| {
-            write_layers(image, together, &self.lights, self.encoding, &metadata, out)
-        })?;
-        if self.separate {
-            for layer in layers {
-                let path = self.path_of(layer.pass);
-                write_file(&path, cancel, |out| write_layer(image, layer, self.encoding, &metadata, out))?;
-            }
+        let name = |layer: &Layer| layer.pass.name(&self.lights);
+        let encoded = |layers: &[Layer], record: &Provenance, path: &Path| {
+            write_file(path, cancel, |out| encode_as_recorded(image, layers, &self.lights, record, out))
+        };
+        if !self.separate {
+            let record = Provenance { passes: layers.iter().map(name).collect(), ..record.clone() };
+            return encoded(layers, &record, &self.path);
         }
-        Ok(())
+        encoded(&[], record, &self.path)?;
+        layers.iter().try_for_each(|layer| {
+            let record = Provenance { pass: Some(name(layer)), ..record.clone() };
+            encoded(std::slice::from_ref(layer), &record, &self.path_of(layer.pass))
+        })
     }
 
     /// What was written, for programs.
@@ -137,6 +137,25 @@ impl PassPlan {
             objects: has(Pass::ObjectId).then(|| objects.collect()),
             materials: has(Pass::MaterialId).then(|| materials.collect()),
         }
+    }
+}
+
+/// Writes what a record says that a file holds: a picture, a picture and its layers, or a layer.
+///
+/// # Errors
+/// `out` fails.
+pub(crate) fn encode_as_recorded(
+    image: &Image,
+    layers: &[Layer],
+    lights: &[String],
+    record: &Provenance,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let (&Provenance { tone, encoding, .. }, metadata) = (record, record.metadata());
+    match (&record.pass, layers) {
+        (Some(_), [layer]) => write_layer(image, layer, encoding, &metadata, out),
+        (None, []) => encode::write(encoding, image, tone, &metadata, out),
+        _ => write_layers(&tone.expose(image), layers, lights, encoding, &metadata, out),
     }
 }
 

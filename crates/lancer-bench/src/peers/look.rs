@@ -6,6 +6,7 @@ use crate::Failure;
 use lancer_core::color::linear_to_srgb;
 use lancer_core::film::{Image, to_srgb8};
 use lancer_core::geometry::DVec2;
+use lancer_core::scene::Wrap;
 use lancer_io::image::Metadata;
 use lancer_io::image::encode::write_png;
 use lancer_io::image::load_texture;
@@ -31,7 +32,7 @@ fn read(picture: &Picture, entry: &Entry) -> Result<Image, Failure> {
     let (columns, rows) = (f64::from(width * n), f64::from(height * n));
     let color = |x: u32, y: u32| {
         let uv = DVec2::new((f64::from(x) + 0.5) / columns, 1.0 - (f64::from(y) + 0.5) / rows);
-        let color = texture.color_at(uv).to_array();
+        let color = texture.color_at(uv, [Wrap::Repeat; 2]).to_array();
         // The texture took the bytes for sRGB.
         if entry.reading == Reading::LinearSubpixels { color.map(linear_to_srgb) } else { color }
     };

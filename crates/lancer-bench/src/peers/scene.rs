@@ -109,7 +109,7 @@ impl Picture {
                 })),
             };
             let material = material.map_or(self.materials.len() - 1, MaterialId::index);
-            if !matches!(self.materials[material].color, Texture::Image(_)) {
+            if !matches!(self.materials[material].color, Texture::Image { .. }) {
                 self.things.push(Thing { form, material, world_from_object });
             }
         }

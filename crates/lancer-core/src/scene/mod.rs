@@ -12,7 +12,7 @@ mod texture;
 pub use material::{Material, MaterialId};
 pub use node::{Node, NodeId, Shape};
 pub use settings::{AmbientOcclusion, Settings, SettingsError};
-pub use texture::{ImageError, ImageTexture, Texture};
+pub use texture::{ImageError, ImageTexture, Texture, Wrap};
 
 use crate::camera::Camera;
 use crate::color::Rgb;

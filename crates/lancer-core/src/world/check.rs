@@ -22,7 +22,7 @@ fn check_material(index: usize, material: &Material) -> Result<(), CompileError>
     let colors = match &material.color {
         Texture::Solid(color) => vec![*color],
         Texture::Checker { even, odd, .. } => vec![*even, *odd],
-        Texture::Image(_) => Vec::new(),
+        Texture::Image { .. } => Vec::new(),
     };
     let checker_size = match material.color {
         Texture::Checker { size, .. } => size,

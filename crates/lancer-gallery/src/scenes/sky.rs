@@ -7,7 +7,7 @@
 use lancer_core::Rgb;
 use lancer_core::color::linear_to_srgb;
 use lancer_core::geometry::{DVec3, Transform, portable};
-use lancer_core::scene::{ImageTexture, Material, Node, Scene, Shape, Texture};
+use lancer_core::scene::{ImageTexture, Material, Node, Scene, Shape};
 use std::sync::Arc;
 
 /// The colours of a sky.
@@ -27,7 +27,7 @@ impl Sky {
     /// Puts the sky around a scene whose ambient light is set, as a ball about the origin.
     pub(super) fn put_over(&self, scene: &mut Scene, radius: f64) {
         let material = scene.add_material(Material {
-            color: Texture::Image(Arc::new(self.picture())),
+            color: Arc::new(self.picture()).into(),
             ambient: scene.ambient.map(|channel| 1.0 / channel),
             diffuse: Rgb::BLACK,
             ..Material::named("sky")

@@ -7,12 +7,17 @@
 //! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for
 //! Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020: the metric for displays (LDR-FLIP), with
 //! the authors' constants. All of its filters are products of one for rows and one for columns, and are applied so.
+//!
+//! No filter reaches further than some rows. A picture is therefore gone through in bands, each with as many rows more
+//! above and below as filters reach: on all threads, in memory for a few bands, and with the same numbers as in one go.
 
 use super::filter::Plane;
 use lancer_core::color::srgb_to_linear;
 use lancer_core::film::Image;
 use lancer_core::geometry::portable;
+use rayon::prelude::*;
 use std::f64::consts::{LOG2_E, PI};
+use std::ops::Range;
 
 /// How many pixels an eye sees in a degree, on a display of 3840 pixels over 0.7 m, from 0.7 m away: the default of
 /// the authors.
@@ -29,7 +34,7 @@ const FEATURE_WIDTH: f64 = 0.082;
 /// The exponent that spreads small differences of edges and points (q_f).
 const FEATURE_EXPONENT: f64 = 0.5;
 
-/// FLIP of each pixel, top row first. Shape: `[height * width]`.
+/// FLIP of each pixel, top row first, found on the threads of the current rayon pool. Shape: `[height * width]`.
 ///
 /// `pixels_per_degree` says from how far the pictures are looked at: [`PIXELS_PER_DEGREE`] where it does not matter.
 /// Pictures are of one size, and hold sRGB from 0 to 1.
@@ -39,11 +44,44 @@ const FEATURE_EXPONENT: f64 = 0.5;
 pub fn flip(reference: &Image, test: &Image, pixels_per_degree: f64) -> Vec<f32> {
     assert_eq!((reference.width(), reference.height()), (test.width(), test.height()), "sizes");
     assert!((1.0..=1000.0).contains(&pixels_per_degree), "{pixels_per_degree} pixels a degree");
-    let (reference, test) = (Opponent::of(reference), Opponent::of(test));
+    let reach = color_radius(pixels_per_degree).max(feature_radius(pixels_per_degree));
+    let (width, height) = (reference.width() as usize, reference.height() as usize);
+    let mut values = vec![0.0; width * height];
+    if values.is_empty() {
+        return values;
+    }
+    let rows_of_band = LEAST_ROWS.max(reach * ROWS_FOR_REACH);
+    let bands = values.par_chunks_mut(rows_of_band * width).enumerate();
+    bands.for_each(|(index, band)| {
+        let first = index * rows_of_band;
+        let end = first + band.len() / width;
+        let seen = first.saturating_sub(reach)..(end + reach).min(height);
+        let found = flip_of_rows(reference, test, seen.clone(), pixels_per_degree);
+        for (value, found) in band.iter_mut().zip(found.skip((first - seen.start) * width)) {
+            *value = found;
+        }
+    });
+    values
+}
+
+/// The least rows of a band: fewer would leave threads more to share out than to do.
+const LEAST_ROWS: usize = 16;
+/// How many times as high a band is as filters reach to each side. Where it is 1, two of three rows are filtered for a
+/// neighbour; where it is 100, a small picture is one band, for one thread. Untuned.
+const ROWS_FOR_REACH: usize = 6;
+
+/// FLIP of some rows of a picture, as if there were no others.
+fn flip_of_rows(
+    reference: &Image,
+    test: &Image,
+    rows: Range<usize>,
+    pixels_per_degree: f64,
+) -> impl Iterator<Item = f32> {
+    let (reference, test) = (Opponent::of(reference, rows.clone()), Opponent::of(test, rows));
     let features = feature_differences(&reference.lightness(), &test.lightness(), pixels_per_degree);
     let colors = color_differences(&reference, &test, pixels_per_degree);
     let combined = colors.into_iter().zip(features);
-    combined.map(|(color, feature)| portable::pow(color, 1.0 - f64::from(feature)) as f32).collect()
+    combined.map(|(color, feature)| portable::pow(color, 1.0 - f64::from(feature)) as f32)
 }
 
 /// Linear RGB to CIE XYZ, for sRGB's primaries.
@@ -75,11 +113,12 @@ struct Opponent {
 }
 
 impl Opponent {
-    fn of(srgb: &Image) -> Self {
-        let (width, height) = (srgb.width() as usize, srgb.height() as usize);
+    /// Some rows of a picture.
+    fn of(srgb: &Image, rows: Range<usize>) -> Self {
+        let (width, height) = (srgb.width() as usize, rows.len());
         let mut planes = [(); 3].map(|()| Plane { width, height, values: Vec::new() });
         let white = white();
-        for pixel in srgb.pixels() {
+        for pixel in &srgb.pixels()[rows.start * width..rows.end * width] {
             let rgb = pixel.map(|value| srgb_to_linear(f64::from(value.clamp(0.0, 1.0).max(0.0))));
             let xyz = times(&XYZ_FROM_RGB, rgb);
             let [x, y, z] = std::array::from_fn(|i| xyz[i] / white[i]);
@@ -132,7 +171,7 @@ const WIDEST: f64 = 0.04;
 
 impl Sensitivity {
     fn filtered(&self, plane: &Plane, pixels_per_degree: f64) -> Plane {
-        let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
+        let radius = color_radius(pixels_per_degree);
         let mut values = vec![0.0_f32; plane.values.len()];
         let kernels = self.gaussians.iter().map(|&(a, b)| {
             let kernel =
@@ -152,9 +191,24 @@ impl Sensitivity {
     }
 }
 
+/// How many pixels the filters of colours reach to each side.
+fn color_radius(pixels_per_degree: f64) -> usize {
+    (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as usize
+}
+
+/// How wide an edge is that the filters of edges and points see, in pixels.
+fn feature_deviation(pixels_per_degree: f64) -> f64 {
+    0.5 * FEATURE_WIDTH * pixels_per_degree
+}
+
+/// How many pixels these reach to each side.
+fn feature_radius(pixels_per_degree: f64) -> usize {
+    (3.0 * feature_deviation(pixels_per_degree)).ceil() as usize
+}
+
 /// A function at the pixels from `-radius` to `radius`.
-fn sampled(radius: i32, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    (-radius..=radius).map(|x| f(f64::from(x))).collect()
+fn sampled(radius: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..=2 * radius).map(|i| f(i as f64 - radius as f64)).collect()
 }
 
 fn exp(x: f64) -> f64 {
@@ -206,8 +260,7 @@ fn color_differences(reference: &Opponent, test: &Opponent, pixels_per_degree: f
 
 /// Differences of edges and points from 0 to 1.
 fn feature_differences(reference: &Plane, test: &Plane, pixels_per_degree: f64) -> Vec<f32> {
-    let deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
-    let radius = (3.0 * deviation).ceil() as i32;
+    let (deviation, radius) = (feature_deviation(pixels_per_degree), feature_radius(pixels_per_degree));
     let gaussian = |x: f64| exp(-x * x / (2.0 * deviation * deviation));
     let smooth = sampled(radius, gaussian);
     let total = smooth.iter().sum::<f64>();
@@ -242,6 +295,7 @@ fn balanced(kernel: Vec<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lancer_core::render::with_threads;
 
     fn picture(width: u32, height: u32, color: impl Fn(u32, u32) -> [f32; 3]) -> Image {
         let mut image = Image::black(width, height);
@@ -267,6 +321,19 @@ mod tests {
     fn equal_pictures_differ_nowhere() {
         let image = picture(20, 15, noise(1));
         assert!(flip(&image, &image, PIXELS_PER_DEGREE).iter().all(|&value| value == 0.0));
+    }
+
+    #[test]
+    fn bands_and_threads_change_no_bit() {
+        let (a, b) = (picture(23, 301, noise(1)), picture(23, 301, noise(2)));
+        for pixels_per_degree in [1.0, PIXELS_PER_DEGREE] {
+            let in_one_go =
+                flip_of_rows(&a, &b, 0..301, pixels_per_degree).map(f32::to_bits).collect::<Vec<_>>();
+            for threads in [1, 3] {
+                let found = with_threads(threads, || flip(&a, &b, pixels_per_degree)).unwrap();
+                assert_eq!(found.into_iter().map(f32::to_bits).collect::<Vec<_>>(), in_one_go);
+            }
+        }
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares two pictures; what `pixels_per_degree` means, [`flip`] says.
+    /// Compares two pictures, FLIP on the threads of the current rayon pool; what `pixels_per_degree` means, [`flip`] says.
     ///
     /// # Errors
     /// They are not of one size.
@@ -62,7 +62,7 @@ impl Comparison {
         let (width, height) = size(a);
         let is_linear = a.is_linear && b.is_linear;
         let shown = (a.to_display(), b.to_display());
-        let (of_a, of_b) = if is_linear { (&a.values, &b.values) } else { (&shown.0, &shown.1) };
+        let (of_a, of_b) = if is_linear { (&a.values, &b.values) } else { (&*shown.0, &*shown.1) };
         let differences = differences(of_a, of_b);
 
         let (mut differing, mut sum, mut squares, mut max) = (0, 0.0, 0.0, 0.0_f64);

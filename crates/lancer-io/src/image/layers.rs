@@ -7,13 +7,16 @@
 //! Source of the names: OpenEXR's "Technical introduction", on channel names and layers; `P`, `N`, `Ng` and `uv` are
 //! those that renderers and compositors agree on.
 
-use super::encode::{exr_attributes, exr_layout};
+use super::encode::{exr_attributes, exr_layout, exr_placed};
+use super::read::exr_check_sizes;
 use super::{Encoding, Metadata};
 use ::exr::prelude::{
-    AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer as ExrLayer, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, FlatSamples, Layer as ExrLayer, ReadChannels, ReadLayers, Text, Vec2,
+    WritableImage,
 };
 use lancer_core::film::Image;
 use lancer_core::render::passes::{Layer, Pass, Samples};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Cursor, Write};
 
 /// Writes a picture and its layers as one OpenEXR file. `lights` are the names of the lights, by
@@ -54,6 +57,38 @@ pub fn write_layer(
 pub fn channel_names(pass: Pass, lights: &[String]) -> Vec<String> {
     let prefix = prefix(pass, lights);
     names(&Samples::empty(pass)).iter().map(|name| joined(&prefix, name)).collect()
+}
+
+/// The channels in which two OpenEXR files differ, by name; those that only one of them has, too.
+///
+/// # Errors
+/// One of them is no such file, or of more than `most_pixels`.
+pub fn differing_channels(a: &[u8], b: &[u8], most_pixels: u64) -> Result<Vec<String>, String> {
+    let (a, b) = (read_channels(a, most_pixels)?, read_channels(b, most_pixels)?);
+    let names = a.keys().chain(b.keys()).collect::<BTreeSet<_>>();
+    Ok(names.into_iter().filter(|&name| a.get(name) != b.get(name)).cloned().collect())
+}
+
+/// The channels of a file's first layer, as bits, by name.
+fn read_channels(bytes: &[u8], most_pixels: u64) -> Result<BTreeMap<String, Vec<u32>>, String> {
+    exr_check_sizes(bytes, most_pixels)?;
+    let layer = ::exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|error| format!("is a broken OpenEXR: {error}"))?
+        .layer_data;
+    let bits = |samples: &FlatSamples| match samples {
+        FlatSamples::F16(values) => values.iter().map(|value| u32::from(value.to_bits())).collect(),
+        FlatSamples::F32(values) => values.iter().map(|value| value.to_bits()).collect(),
+        FlatSamples::U32(values) => values.clone(),
+    };
+    let channels = layer.channel_data.list.iter();
+    Ok(channels.map(|channel| (channel.name.to_string(), bits(&channel.sample_data))).collect())
 }
 
 /// What stands before the dot in the names of a pass's channels; nothing for those of the picture itself.
@@ -131,7 +166,7 @@ fn write_channels(
     );
     // The format's table of offsets is written last, so it needs a place that can be sought in.
     let mut bytes = Cursor::new(Vec::new());
-    ExrImage::from_layer(layer).write().non_parallel().to_buffered(&mut bytes).map_err(to_io_error)?;
+    exr_placed(layer, metadata).write().non_parallel().to_buffered(&mut bytes).map_err(to_io_error)?;
     out.write_all(bytes.get_ref())
 }
 

@@ -13,6 +13,21 @@ pub struct Metadata {
     pub provenance: Option<String>,
     /// Pixels to the inch in print.
     pub dpi: Option<u16>,
+    /// Where the picture lies in a larger one of which it is a part.
+    pub window: Option<Window>,
+}
+
+/// Where a picture lies in a larger one. In pixels; (0, 0) is the top left one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// The larger picture's column that is the first one here.
+    pub x: u32,
+    /// Its row that is the first one here.
+    pub y: u32,
+    /// Columns of the larger picture.
+    pub width: u32,
+    /// Rows of the larger picture.
+    pub height: u32,
 }
 
 impl Default for Metadata {
@@ -22,6 +37,7 @@ impl Default for Metadata {
             title: String::new(),
             provenance: None,
             dpi: None,
+            window: None,
         }
     }
 }

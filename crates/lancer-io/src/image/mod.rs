@@ -15,7 +15,7 @@ mod read;
 pub use decode::load_texture;
 pub(crate) use decode::texture_of_bytes;
 pub use format::{Compression, Encoding, EncodingChoice, EncodingError, ImageFormat, UnknownImageFormat};
-pub use metadata::Metadata;
+pub use metadata::{Metadata, Window};
 pub use read::{Picture, decode_picture, provenance_of, read_picture};
 
 /// The variable in the header of a Radiance HDR file that says how the picture was made.

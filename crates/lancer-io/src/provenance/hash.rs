@@ -4,7 +4,7 @@ use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::{DVec3, Transform};
 use lancer_core::mesh::{Mesh, MeshData};
-use lancer_core::scene::{ImageTexture, Light, Material, Node, Scene, Shape, Texture};
+use lancer_core::scene::{ImageTexture, Light, Material, Node, Scene, Shape, Texture, Wrap};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -34,26 +34,31 @@ use std::sync::Arc;
 pub struct SceneHash([u8; 32]);
 
 /// What the bytes mean; to be raised whenever that changes, so that old hashes agree with no new ones.
-const FORM: &[u8] = b"lancer scene 1";
+const FORM: &[u8] = b"lancer scene 2";
 
 impl SceneHash {
     /// The hash of a scene as a camera sees it.
     pub fn of(scene: &Scene, camera: &Camera) -> Self {
-        let mut bytes = Bytes { hash: Sha256::new(), meshes: HashMap::new(), images: HashMap::new() };
-        bytes.hash.update(FORM);
+        let mut bytes = Bytes::of(scene);
         bytes.camera(camera);
-        bytes.rgb(scene.ambient);
-        bytes.rgb(scene.background);
-        bytes.list(&scene.lights, Bytes::light);
-        bytes.list(scene.materials(), Bytes::material);
-        bytes.list(scene.nodes(), Bytes::node);
-        bytes.list(scene.roots(), |bytes, root| bytes.integer(root.index()));
         Self(bytes.hash.finalize().into())
+    }
+
+    /// The hash for each of many cameras: as [`SceneHash::of`], but the scene is gone through once.
+    pub fn of_each(scene: &Scene, cameras: &[Camera]) -> Vec<Self> {
+        let scene = Bytes::of(scene);
+        let of = |camera| {
+            let mut bytes = scene.clone();
+            bytes.camera(camera);
+            Self(bytes.hash.finalize().into())
+        };
+        cameras.iter().map(of).collect()
     }
 }
 
 /// What is hashed so far. Every list is preceded by its length and every choice by its number, so that no two scenes
 /// are the same bytes.
+#[derive(Clone)]
 struct Bytes {
     hash: Sha256,
     /// The shared parts that are hashed, by where they are, and their places in the order of that.
@@ -62,6 +67,19 @@ struct Bytes {
 }
 
 impl Bytes {
+    /// All of a scene but its cameras.
+    fn of(scene: &Scene) -> Self {
+        let mut bytes = Self { hash: Sha256::new(), meshes: HashMap::new(), images: HashMap::new() };
+        bytes.hash.update(FORM);
+        bytes.rgb(scene.ambient);
+        bytes.rgb(scene.background);
+        bytes.list(&scene.lights, Bytes::light);
+        bytes.list(scene.materials(), Bytes::material);
+        bytes.list(scene.nodes(), Bytes::node);
+        bytes.list(scene.roots(), |bytes, root| bytes.integer(root.index()));
+        bytes
+    }
+
     fn integer(&mut self, value: usize) {
         self.hash.update((value as u64).to_le_bytes());
     }
@@ -142,9 +160,16 @@ impl Bytes {
                 self.rgb(*odd);
                 self.number(*size);
             }
-            Texture::Image(image) => {
+            Texture::Image { image, wrap } => {
                 self.integer(2);
                 self.image(image);
+                for wrap in wrap {
+                    self.integer(match wrap {
+                        Wrap::Repeat => 0,
+                        Wrap::Clamp => 1,
+                        Wrap::Mirror => 2,
+                    });
+                }
             }
         }
     }
@@ -262,7 +287,7 @@ mod tests {
     }
 
     fn texture(green: u8) -> Texture {
-        Texture::Image(Arc::new(ImageTexture::new(1, 1, vec![[0, green, 0]]).unwrap()))
+        Arc::new(ImageTexture::new(1, 1, vec![[0, green, 0]]).unwrap()).into()
     }
 
     fn scene() -> Scene {
@@ -286,7 +311,7 @@ mod tests {
 
     #[test]
     fn everything_that_decides_a_pixel_changes_the_hash() {
-        let edits: [fn(&mut Scene); 18] = [
+        let edits: [fn(&mut Scene); 19] = [
             |scene| scene.camera.eye.x += 1.0,
             |scene| scene.camera.fov += 1.0,
             |scene| scene.ambient = Rgb::WHITE,
@@ -295,6 +320,11 @@ mod tests {
             |scene| scene.lights[0].intensity.g = 2.0,
             |scene| scene.lights.clear(),
             |scene| scene.materials_mut()[0].color = texture(8),
+            |scene| {
+                if let Texture::Image { wrap, .. } = &mut scene.materials_mut()[0].color {
+                    wrap[1] = Wrap::Clamp;
+                }
+            },
             |scene| scene.materials_mut()[0].color = Texture::Solid(Rgb::BLACK),
             |scene| scene.materials_mut()[0].ior = 2.0,
             |scene| scene.materials_mut()[0].shininess = 2.0,
@@ -315,6 +345,16 @@ mod tests {
         for (index, hash) in hashes.iter().enumerate() {
             assert!(!hashes[..index].contains(hash), "edit {index} makes no difference");
         }
+    }
+
+    #[test]
+    fn many_cameras_have_the_hashes_that_each_has_alone() {
+        let scene = scene();
+        let cameras = [scene.camera, scene.camera.orbited(DVec3::Y, 30.0)];
+        assert_eq!(
+            SceneHash::of_each(&scene, &cameras),
+            cameras.map(|camera| SceneHash::of(&scene, &camera))
+        );
     }
 
     #[test]

@@ -12,9 +12,11 @@ mod hash;
 
 pub use hash::SceneHash;
 
-use crate::image::{Compression, Encoding, EncodingChoice, ImageFormat, Metadata};
+use crate::image::{Compression, Encoding, EncodingChoice, ImageFormat, Metadata, Window};
 use crate::scene_file::Override;
+use lancer_core::camera::Camera;
 use lancer_core::film::{Tone, ToneCurve};
+use lancer_core::geometry::DVec3;
 use lancer_core::scene::{AmbientOcclusion, Settings};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::ser::Formatter;
@@ -62,6 +64,12 @@ pub struct Provenance {
     /// Pixels to the inch in print.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dpi: Option<u16>,
+    /// The passes whose layers lie beside the picture, by their names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub passes: Vec<String>,
+    /// The pass whose layer lies in the picture's place, by its name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pass: Option<String>,
 }
 
 /// A text says nothing of how a picture was made.
@@ -88,6 +96,10 @@ impl Provenance {
             title: self.name.clone(),
             provenance: Some(self.to_text()),
             dpi: self.dpi,
+            window: self.region.map(|[x, y, ..]| {
+                let Settings { width, height, .. } = self.render;
+                Window { x, y, width, height }
+            }),
         }
     }
 
@@ -107,6 +119,18 @@ pub fn record_overrides(overrides: &[Override]) -> (Vec<String>, Vec<String>) {
     let (unrecorded, set) = texts.partition::<Vec<_>, _>(|text| names_a_place(text));
     let path_of = |text: String| text.split('=').next().unwrap_or_default().to_owned();
     (set, unrecorded.into_iter().map(path_of).collect())
+}
+
+/// A camera as overrides of the scene's own, every bit of it.
+pub fn camera_overrides(camera: &Camera) -> Vec<String> {
+    let vector = |DVec3 { x, y, z }: DVec3| format!("[{x}, {y}, {z}]");
+    let Camera { eye, target, up, fov } = *camera;
+    vec![
+        format!("camera.eye={}", vector(eye)),
+        format!("camera.target={}", vector(target)),
+        format!("camera.up={}", vector(up)),
+        format!("camera.fov={fov}"),
+    ]
 }
 
 /// Whether a text may hold an absolute path, or one of a home.
@@ -235,7 +259,6 @@ impl EncodingRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lancer_core::camera::Camera;
     use lancer_core::scene::Scene;
 
     fn record() -> Provenance {
@@ -256,6 +279,8 @@ mod tests {
             unrecorded: Vec::new(),
             encoding: Encoding::from(ImageFormat::Exr),
             dpi: Some(300),
+            passes: vec!["ambient".into(), "light.key".into()],
+            pass: None,
         }
     }
 

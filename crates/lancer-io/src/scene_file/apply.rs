@@ -138,7 +138,7 @@ impl Edits<'_> {
         });
         // An image has no reference to be written as; it stays, unless something else was put in its place.
         let keeps_image =
-            matches!(old.color, Texture::Image(_)) && !self.touch(&["materials", &old.name, "color"]);
+            matches!(old.color, Texture::Image { .. }) && !self.touch(&["materials", &old.name, "color"]);
         if keeps_image {
             new.color = old.color.clone();
         }

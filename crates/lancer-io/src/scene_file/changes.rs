@@ -154,7 +154,8 @@ impl Differ<'_> {
                 continue;
             };
             let path = path.iter().map(String::as_str).collect::<Vec<_>>();
-            if old.name != new.name || (old.color != new.color && matches!(new.color, Texture::Image(_))) {
+            if old.name != new.name || (old.color != new.color && matches!(new.color, Texture::Image { .. }))
+            {
                 self.unsaved(Unsaved::Material(old.name.clone()));
             }
             if old.color != new.color

@@ -70,7 +70,7 @@ pub(super) fn of_texture(texture: &Texture, rgb: Channels) -> Option<Rc<Node>> {
             let checker = mapping([("even", rgb(*even)), ("odd", rgb(*odd)), ("size", number(*size))]);
             Some(mapping([("checker", checker)]))
         }
-        Texture::Image(_) => None,
+        Texture::Image { .. } => None,
     }
 }
 

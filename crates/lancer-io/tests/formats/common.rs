@@ -31,6 +31,11 @@ impl Files {
         self.0.path().join("models").join(name)
     }
 
+    /// A path beside the model's directory.
+    pub(crate) fn outside(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
     pub(crate) fn load(&self, name: &str) -> Result<Model, LoadError> {
         self.load_within(name, Limits::default())
     }

@@ -170,7 +170,7 @@ fn what_the_file_does_not_hold_is_told() {
         "it would take the model's own materials away"
     );
     assert_eq!(unsaved(|scene| _ = scene.add(Node::shape("new", Shape::Cube))), [Unsaved::Structure]);
-    let image = |scene: &mut Scene| scene.materials_mut()[0].color = Texture::Image(wood());
+    let image = |scene: &mut Scene| scene.materials_mut()[0].color = wood().into();
     assert_eq!(unsaved(image), [Unsaved::Material("glass".into())]);
     assert_eq!(
         unsaved(|scene| scene.materials_mut()[0].name = "x".into()),

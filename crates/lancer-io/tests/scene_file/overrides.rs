@@ -54,7 +54,7 @@ fn errors_in_overrides_name_the_override() {
 
 fn made_by_code() -> Scene {
     let mut scene = Scene::new("built in");
-    scene.add_material(Material { color: Texture::Image(wood()), ..Material::named("wood") });
+    scene.add_material(Material { color: wood().into(), ..Material::named("wood") });
     scene.add_material(Material::named("Material.001"));
     scene.add_material(Material::default());
     scene.lights.push(Light { name: "sun".into(), position: vector(1.0, 2.0, 3.0), intensity: Rgb::WHITE });

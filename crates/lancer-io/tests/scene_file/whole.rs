@@ -1,10 +1,10 @@
 //! Files without faults read into exactly the scene that they say.
 
-use crate::common::{Shelf, drawn, load_with, scene, vector, warnings, wood};
+use crate::common::{Shelf, drawn, load_with, scene, the_error, vector, warnings, wood};
 use lancer_core::Rgb;
 use lancer_core::camera::Camera;
 use lancer_core::geometry::Transform;
-use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, Scene, Settings, Shape, Texture};
+use lancer_core::scene::{AmbientOcclusion, Light, Material, Node, Scene, Settings, Shape, Texture, Wrap};
 
 /// The example of the format's description.
 pub(crate) const EXAMPLE: &str = r##"
@@ -131,7 +131,7 @@ objects:
 
     let colors = scene.materials().iter().map(|material| material.color.clone()).collect::<Vec<_>>();
     let checker = |size| Texture::Checker { even: Rgb::WHITE, odd: Rgb::BLACK, size };
-    assert_eq!(colors, [Texture::Solid(Rgb::grey(0.5)), Texture::Image(wood()), checker(1.0), checker(0.5)]);
+    assert_eq!(colors, [Texture::Solid(Rgb::grey(0.5)), Texture::from(wood()), checker(1.0), checker(0.5)]);
     assert_eq!(shelf.textures_read, 1);
     assert_eq!(scene.materials()[0].ambient, Rgb::new(1.0, 2.0, 3.0));
     assert!(scene.materials()[0].fresnel);
@@ -140,6 +140,26 @@ objects:
     assert_eq!(point(1), vector(2.0, 4.0, 6.0));
     assert_eq!(point(2), vector(-2.0, 1.0, 3.0));
     assert_eq!(point(3), vector(7.0, 4.0, 4.0));
+}
+
+#[test]
+fn what_lies_beyond_an_image_is_read_for_both_axes_or_for_each() {
+    let wrap_of = |image: &str| {
+        let text = format!(
+            "format: 1\nambient: 1\nobjects: [{{shape: cube, material: {{color: {{image: {image}}}}}}}]\n"
+        );
+        let scene = load_with(text.as_bytes(), &[], &mut Shelf::default()).unwrap().scene;
+        let Texture::Image { wrap, .. } = scene.materials()[0].color else { panic!("{image}") };
+        wrap
+    };
+    assert_eq!(wrap_of("wood.png"), [Wrap::Repeat; 2]);
+    assert_eq!(wrap_of("{file: wood.png}"), [Wrap::Repeat; 2]);
+    assert_eq!(wrap_of("{file: wood.png, wrap: clamp}"), [Wrap::Clamp; 2]);
+    assert_eq!(wrap_of("{file: wood.png, wrap: [repeat, mirror]}"), [Wrap::Repeat, Wrap::Mirror]);
+    let (error, _) = the_error(
+        "format: 1\nobjects: [{shape: cube, material: {color: {image: {file: wood.png, wrap: [clamp, once]}}}}]\n",
+    );
+    assert_eq!(error, "2:82: wrap[1] is the text `once`, must be repeat, clamp or mirror");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use lancer_core::Rgb;
 use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::geometry::Transform;
 use lancer_core::mesh::{Mesh, MeshData};
-use lancer_core::scene::{ImageTexture, Material, Node, Scene, Shape, Texture};
+use lancer_core::scene::{ImageTexture, Material, Node, Scene, Shape, Texture, Wrap};
 use lancer_io::scene_file::write_whole;
 use lancer_io::{LoadOptions, load};
 use std::fs;
@@ -54,11 +54,18 @@ fn everything() -> Scene {
     scene.settings.ao.samples = 3;
     scene.settings.refraction = false;
     scene.tone = Tone { exposure: 0.7, curve: ToneCurve::Filmic };
-    let image = Arc::new(ImageTexture::new(2, 1, vec![[0, 127, 255], [3, 2, 1]]).unwrap());
-    let image = scene.add_material(Material { color: Texture::Image(image), ..Material::named("twice") });
+    let texels = Arc::new(ImageTexture::new(2, 1, vec![[0, 127, 255], [3, 2, 1]]).unwrap());
+    let image =
+        scene.add_material(Material { color: Arc::clone(&texels).into(), ..Material::named("twice") });
     let checker = Texture::Checker { even: Rgb::WHITE, odd: Rgb::new(0.1, 0.2, 0.3), size: 0.3 };
     let checker = scene.add_material(Material { color: checker, ior: 1.3, ..Material::named("twice") });
     let nameless = scene.add_material(Material { fresnel: true, ..Material::default() });
+    let wrapped = |wrap| Texture::Image { image: Arc::clone(&texels), wrap };
+    for wrap in [[Wrap::Clamp; 2], [Wrap::Mirror, Wrap::Repeat]] {
+        let material = Material { color: wrapped(wrap), ..Material::named("beyond") };
+        let material = scene.add_material(material);
+        scene.add(Node::shape("wrapped", Shape::Plane).with_material(material));
+    }
 
     let mesh = scene.insert(Node::mesh("Odd/one", odd_mesh()).with_material(image));
     let shared =
@@ -90,7 +97,7 @@ fn a_written_scene_reads_back_as_what_it_was() {
             assert_eq!(mesh, odd_mesh());
         }
         let names = found.materials().iter().map(|material| material.name.as_str()).collect::<Vec<_>>();
-        assert_eq!(names, ["twice", "twice 2", "material"]);
+        assert_eq!(names, ["twice", "twice 2", "material", "beyond", "beyond 2"]);
         for (found, expected) in found.materials().iter().zip(scene.materials()) {
             assert_eq!(*found, Material { name: found.name.clone(), ..expected.clone() });
         }

@@ -1,11 +1,9 @@
 //! How a render was made, for the file that it is saved into.
 
 use crate::worker::RenderRequest;
-use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
-use lancer_core::geometry::DVec3;
 use lancer_io::image::{Encoding, Metadata};
-use lancer_io::provenance::{Provenance, SceneHash, SceneSource};
+use lancer_io::provenance::{Provenance, SceneHash, SceneSource, camera_overrides};
 
 /// How a render was made.
 pub(crate) struct Making {
@@ -31,30 +29,22 @@ impl Making {
             region: None,
             render: *settings,
             tone: self.tone,
-            set: if *camera == scene.camera { Vec::new() } else { overrides_of(camera) },
+            set: if *camera == scene.camera { Vec::new() } else { camera_overrides(camera) },
             unrecorded: Vec::new(),
             encoding,
             dpi: None,
+            passes: Vec::new(),
+            pass: None,
         };
         record.metadata()
     }
 }
 
-/// The camera as overrides, every bit of it.
-fn overrides_of(camera: &Camera) -> Vec<String> {
-    let vector = |DVec3 { x, y, z }: DVec3| format!("[{x}, {y}, {z}]");
-    let Camera { eye, target, up, fov } = *camera;
-    vec![
-        format!("camera.eye={}", vector(eye)),
-        format!("camera.target={}", vector(target)),
-        format!("camera.up={}", vector(up)),
-        format!("camera.fov={fov}"),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lancer_core::camera::Camera;
+    use lancer_core::geometry::DVec3;
     use lancer_io::scene_file::apply_overrides;
 
     #[test]
@@ -66,7 +56,7 @@ mod tests {
             fov: 33.3,
             ..scene.camera
         };
-        let overrides = overrides_of(&view).iter().map(|text| text.parse().unwrap()).collect::<Vec<_>>();
+        let overrides = camera_overrides(&view).iter().map(|text| text.parse().unwrap()).collect::<Vec<_>>();
         apply_overrides(&mut scene, &overrides).unwrap();
         assert_eq!(scene.camera, view);
     }

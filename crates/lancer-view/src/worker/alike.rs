@@ -50,8 +50,10 @@ fn same_node(a: &Node, b: &Node) -> bool {
 
 fn same_material(a: &Material, b: &Material) -> bool {
     let same_color = match (&a.color, &b.color) {
-        (Texture::Image(a), Texture::Image(b)) => Arc::ptr_eq(a, b),
-        (Texture::Image(_), _) | (_, Texture::Image(_)) => false,
+        (Texture::Image { image: a, wrap: wrap_a }, Texture::Image { image: b, wrap: wrap_b }) => {
+            Arc::ptr_eq(a, b) && wrap_a == wrap_b
+        }
+        (Texture::Image { .. }, _) | (_, Texture::Image { .. }) => false,
         (a, b) => a == b,
     };
     let rest = |m: &Material| {

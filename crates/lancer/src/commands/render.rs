@@ -38,7 +38,7 @@ fn run_job(job: &Job) -> Result<(), Error> {
     warnings.iter().for_each(terminal::tell_warning);
     let shot = job.shot(&scene)?;
     let plan = job.passes.as_ref().map(|files| files.plan(&scene)).transpose()?;
-    let metadata = timed(&mut stages.load, || job.metadata(&scene, &shot));
+    let record = timed(&mut stages.load, || job.record(&scene, &shot));
 
     let world =
         timed(&mut stages.build, || progress.during("building", || World::compile(&scene, &setup.compile)))
@@ -53,8 +53,8 @@ fn run_job(job: &Job) -> Result<(), Error> {
     })?;
     timed(&mut stages.write, || {
         progress.during("writing", || match &plan {
-            None => job.destination.write(&picture.image, shot.tone, &metadata, &cancel),
-            Some(plan) => plan.write(&shot.tone.expose(&picture.image), &layers, metadata, &cancel),
+            None => job.destination.write(&picture.image, shot.tone, &record.metadata(), &cancel),
+            Some(plan) => plan.write(&picture.image, &layers, &record, &cancel),
         })
     })?;
 
@@ -84,7 +84,7 @@ pub(super) fn trace(
 }
 
 /// As [`trace`], with the layers of passes.
-fn trace_passes(
+pub(super) fn trace_passes(
     shot: &Shot,
     tile_size: u32,
     world: &World,

@@ -20,6 +20,9 @@ use lancer_io::image::encode::write;
 use lancer_io::image::{ImageFormat, Metadata};
 use lancer_io::is_scene_file;
 use lancer_io::showcase::{framing_camera, hide_ground};
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
 
 /// The most subpixels along a pixel's side, and what a model gets: its edges are all that is seen of it at first.
 const SAMPLES: u32 = 3;
@@ -58,16 +61,44 @@ pub(crate) fn run(args: &ThumbnailArgs) -> Result<(), Error> {
         let camera = framing_camera(world.bounds(), &settings);
         let picture = render_passes(&world, &camera, &settings, None, &[Pass::Background], 1.0, &control)?;
         let cutout = cut_out(&picture, &scene);
-        write_file(&args.output, &cancel, |out| write_cutout(&cutout, &metadata, out))
+        deliver(&args.output, &cancel, |out| write_cutout(&cutout, &metadata, out))
     } else {
         let world = compile(&scene)?;
         let (Settings { width, height, .. }, camera) = (settings, scene.camera);
         camera.project(width, height).map_err(|error| fault(&error))?;
         let picture = render(&world, &camera, &settings, None, &control)?;
-        write_file(&args.output, &cancel, |out| {
+        deliver(&args.output, &cancel, |out| {
             write(ImageFormat::Png, &picture.image, scene.tone, &metadata, out)
         })
     }
+}
+
+/// Writes the file, whole or not at all; an empty one that is there is filled.
+///
+/// File managers make the file first, and some read it through the descriptor by which they did (tumbler, of Thunar and
+/// others). That would go on showing the empty file if another took its place.
+fn deliver(
+    path: &Path,
+    cancel: &CancelToken,
+    encode: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
+    if !fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() == 0) {
+        return write_file(path, cancel, encode);
+    }
+    let fill = || {
+        let mut bytes = Vec::new();
+        encode(&mut bytes)?;
+        let mut file = OpenOptions::new().write(true).open(path)?;
+        file.write_all(&bytes).inspect_err(|_| {
+            // The first error is told.
+            let _ = file.set_len(0);
+        })
+    };
+    let _handled = interrupt::only_cancels(cancel);
+    if cancel.is_cancelled() {
+        return Err(Error::Interrupted);
+    }
+    fill().map_err(|error| Error::output(path.display().to_string(), &error))
 }
 
 /// The scene's settings at the size of a thumbnail, and at a bounded effort.

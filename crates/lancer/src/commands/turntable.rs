@@ -16,7 +16,9 @@ use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::diagnostics::LoadError;
+use lancer_io::image::Metadata;
 use lancer_io::image::animation::Film;
+use lancer_io::provenance::{Provenance, SceneHash, camera_overrides};
 use lancer_io::showcase::turning_camera;
 use serde::Serialize;
 
@@ -65,10 +67,11 @@ impl FilmJob {
             progress.during("building", || World::compile(&scene, &setup.compile))
         })
         .map_err(|error| LoadError::from(setup.source.diagnostic(error)))?;
+        let cameras = way.cameras(&world, &shot, &film)?;
+        let frames = timed(&mut stages.load, || self.frames(&scene, &shot, cameras));
         drop(scene);
 
-        let rays =
-            self.shoot(&film, &way.cameras(&world, &shot, &film)?, &shot, &world, &progress, &mut stages)?;
+        let rays = self.shoot(&film, &frames, &shot, &world, &progress, &mut stages)?;
 
         let late = report::cut_short(&rays);
         let late = late.iter().map(|message| setup.source.diagnostic(message)).collect::<Vec<_>>();
@@ -128,11 +131,21 @@ impl FilmJob {
         Ok(Way::Path(path))
     }
 
+    /// The pictures from these cameras. Each is recorded as one of the scene whose own camera is where it is then.
+    fn frames(&self, scene: &Scene, shot: &Shot, cameras: Vec<Camera>) -> Frames {
+        let Some(format) = self.destination.picture_format() else {
+            return Frames { cameras, records: None };
+        };
+        let hashes = SceneHash::of_each(scene, &cameras);
+        let record = self.setup.record(scene, shot, SceneHash::of(scene, &shot.camera), format.into());
+        Frames { cameras, records: Some((Provenance { camera: None, ..record }, hashes)) }
+    }
+
     /// Renders and writes all pictures.
     fn shoot(
         &self,
         film: &Film,
-        cameras: &[Camera],
+        frames: &Frames,
         shot: &Shot,
         world: &World,
         progress: &Progress,
@@ -152,14 +165,32 @@ impl FilmJob {
         };
         let mut writer = FilmWriter::new(&self.destination, *film, shot.tone, &cancel)?;
         let mut rays = RayCounts::default();
-        for camera in cameras {
+        for (index, camera) in frames.cameras.iter().enumerate() {
             let picture =
                 timed(&mut stages.render, || render(world, camera, &shot.settings, shot.region, &control))?;
             rays += picture.rays;
-            timed(&mut stages.write, || writer.add(&picture.image))?;
+            timed(&mut stages.write, || writer.add(&picture.image, &frames.metadata(index)))?;
         }
         timed(&mut stages.write, || writer.finish())?;
         Ok(rays)
+    }
+}
+
+/// The pictures of a film.
+struct Frames {
+    cameras: Vec<Camera>,
+    /// How they were made, where each has a file that can say so: what is the same for all, and the scene as each
+    /// camera sees it.
+    records: Option<(Provenance, Vec<SceneHash>)>,
+}
+
+impl Frames {
+    /// What the file of a picture says beside its pixels.
+    fn metadata(&self, index: usize) -> Metadata {
+        let Some((record, hashes)) = &self.records else { return Metadata::default() };
+        let mut record = Provenance { hash: hashes[index], ..record.clone() };
+        record.set.extend(camera_overrides(&self.cameras[index]));
+        record.metadata()
     }
 }
 

@@ -1,20 +1,23 @@
 //! `lancer verify`: a picture rendered again from what it says of itself, and compared.
 
-use super::render::trace;
+use super::render::{trace, trace_passes};
 use crate::args::VerifyArgs;
 use crate::error::Error;
 use crate::job::{Shot, all_cores, compile_options, load_options};
+use crate::passes::encode_as_recorded;
 use crate::progress::Progress;
 use crate::source::Source;
 use crate::{json, terminal};
 use lancer_core::camera::Camera;
+use lancer_core::render::passes::{Pass, light_names, select};
 use lancer_core::render::{CancelToken, Control, Region, with_threads};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_io::Loaded;
 use lancer_io::compare::{Comparison, PIXELS_PER_DEGREE};
 use lancer_io::diagnostics::{Diagnostic, LoadError};
-use lancer_io::image::{decode_picture, encode, provenance_of};
+use lancer_io::image::layers::differing_channels;
+use lancer_io::image::{ImageFormat, decode_picture, provenance_of};
 use lancer_io::limits::Limits;
 use lancer_io::provenance::{Provenance, SceneHash, SceneSource};
 use lancer_io::resolver::Resolver;
@@ -59,18 +62,26 @@ fn verify(args: VerifyArgs) -> Result<(), Error> {
     let world = progress
         .during("building", || World::compile(&scene, &compile_options(&work)))
         .map_err(|error| LoadError::from(source.diagnostic(error)))?;
-    // As it was recorded, so that a file of another version, or of a scene that has changed unseen, still agrees where
-    // its pixels do.
-    let metadata = record.metadata();
+    let passes = passes_of(&image, &record, &scene)?;
+    let lights = light_names(&scene.lights);
     drop(scene);
 
     let tile_size = work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE);
-    let picture = trace(&shot, tile_size, &world, &CancelToken::default(), &progress)?;
+    let cancel = CancelToken::default();
+    let (picture, layers) = match passes.as_slice() {
+        [] => (trace(&shot, tile_size, &world, &cancel, &progress)?, Vec::new()),
+        passes => trace_passes(&shot, tile_size, &world, passes, &cancel, &progress)?,
+    };
+    // As it was recorded, so that a file of another version, or of a scene that has changed unseen, still agrees where
+    // its pixels do.
     let mut again = Vec::new();
-    encode::write(record.encoding, &picture.image, shot.tone, &metadata, &mut again)
+    encode_as_recorded(&picture.image, &layers, &lights, &record, &mut again)
         .map_err(|error| at_fault(&image, error))?;
 
-    let verdict = Verdict::of(&image, &bytes, &again, limits)?;
+    let verdict = match layers.is_empty() {
+        true => Verdict::of(&image, &bytes, &again, limits)?,
+        false => Verdict::of_layers(&image, &bytes, &again, limits)?,
+    };
     let told = Told { image: &image, source: &source, record: &record, hash, verdict };
     terminal::print(if json { told.json() } else { told.text() })?;
     if told.verdict == Verdict::Same { Ok(()) } else { Err(Error::Different) }
@@ -84,8 +95,8 @@ fn at_fault(image: &Path, message: impl fmt::Display) -> Error {
 fn record_of(image: &Path, bytes: &[u8]) -> Result<Provenance, Error> {
     let Some(text) = provenance_of(bytes) else {
         let fault = Diagnostic::new(image, "does not say how it was made");
-        let hint = "what `lancer render` and the window's renders write does, in any format but PFM, unless a program has \
-                    taken that out";
+        let hint = "what `lancer render`, numbered pictures of `lancer turntable` and the window's renders write does, in any \
+                    format but PFM, unless a program has taken that out; films in one file and thumbnails do not";
         return Err(Error::Scene(fault.with_hint(hint).into()));
     };
     Provenance::from_text(&text).map_err(|error| at_fault(image, error))
@@ -162,6 +173,19 @@ fn camera_of<'a>(image: &Path, record: &Provenance, scene: &'a Scene) -> Result<
     })
 }
 
+/// The passes whose layers the file has.
+fn passes_of(image: &Path, record: &Provenance, scene: &Scene) -> Result<Vec<Pass>, Error> {
+    let names = record.passes.iter().chain(&record.pass).map(String::as_str);
+    if names.clone().next().is_none() {
+        return Ok(Vec::new());
+    }
+    if record.encoding.format() != ImageFormat::Exr || (record.pass.is_some() && !record.passes.is_empty()) {
+        return Err(at_fault(image, "says that it holds layers that no such file holds"));
+    }
+    select(names, &scene.lights)
+        .map_err(|error| at_fault(image, format!("was made with passes that the scene has no more: {error}")))
+}
+
 /// What came out.
 #[derive(Debug, PartialEq)]
 enum Verdict {
@@ -181,6 +205,11 @@ enum Verdict {
         mean: f64,
         /// The code of 1, if the file holds codes.
         codes: Option<u16>,
+    },
+    /// Layers differ, in these channels.
+    DifferentLayers {
+        /// Their names.
+        channels: Vec<String>,
     },
 }
 
@@ -203,6 +232,16 @@ impl Verdict {
                 codes: old.codes,
             },
         })
+    }
+
+    /// As [`Verdict::of`], of files with layers.
+    fn of_layers(image: &Path, bytes: &[u8], again: &[u8], limits: Limits) -> Result<Self, Error> {
+        if bytes == again {
+            return Ok(Self::Same);
+        }
+        let channels = differing_channels(bytes, again, limits.texture_pixels)
+            .map_err(|message| at_fault(image, message))?;
+        Ok(if channels.is_empty() { Self::SamePixels } else { Self::DifferentLayers { channels } })
     }
 }
 
@@ -230,25 +269,33 @@ impl Told<'_> {
                 };
                 format!("{pixels} of {of} pixels differ, by {apart} at most and {mean:.2e} in the mean")
             }
+            Verdict::DifferentLayers { channels } => {
+                format!("these channels differ: {}", channels.join(", "))
+            }
         };
         format!("{}: {verdict} ({} rendered again)\n", self.image.display(), self.source)
     }
 
     fn json(&self) -> String {
         let (differing, max, mean) = match self.verdict {
-            Verdict::Same | Verdict::SamePixels => (0, 0.0, 0.0),
             Verdict::Different { pixels, max, mean, .. } => (pixels, max, mean),
+            _ => (0, 0.0, 0.0),
+        };
+        let channels = match &self.verdict {
+            Verdict::DifferentLayers { channels } => channels.as_slice(),
+            _ => &[],
         };
         json::object(&VerifyJson {
             image: self.image.display().to_string(),
             scene: self.source.to_string(),
             same_bytes: self.verdict == Verdict::Same,
-            same_pixels: differing == 0,
+            same_pixels: matches!(self.verdict, Verdict::Same | Verdict::SamePixels),
             same_scene: self.hash == self.record.hash,
             same_version: self.record.lancer == Provenance::VERSION,
             differing,
             max: max.is_finite().then_some(max),
             mean: mean.is_finite().then_some(mean),
+            channels,
             record: self.record,
         })
     }
@@ -266,5 +313,7 @@ struct VerifyJson<'a> {
     differing: u64,
     max: Option<f64>,
     mean: Option<f64>,
+    /// Those of layers that differ.
+    channels: &'a [String],
     record: &'a Provenance,
 }

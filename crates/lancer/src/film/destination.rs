@@ -64,6 +64,14 @@ impl FilmDestination {
         ))
     }
 
+    /// The format of the pictures, where each has a file of its own.
+    pub(crate) fn picture_format(&self) -> Option<ImageFormat> {
+        match self {
+            Self::Pictures { format, .. } => Some(*format),
+            Self::Animation { .. } | Self::Video { .. } => None,
+        }
+    }
+
     /// Finds out before a long render what would make writing fail after it. It changes nothing.
     ///
     /// # Errors

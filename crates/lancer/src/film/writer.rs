@@ -71,17 +71,17 @@ impl FilmWriter {
         Ok(Self { tone, cancel: cancel.clone(), kind })
     }
 
-    /// Adds the next picture.
+    /// Adds the next picture; `metadata` is for a file of its own.
     ///
     /// # Errors
     /// It cannot be written, or the user asked to stop.
-    pub(crate) fn add(&mut self, image: &Image) -> Result<(), Error> {
+    pub(crate) fn add(&mut self, image: &Image, metadata: &Metadata) -> Result<(), Error> {
         match &mut self.kind {
             Kind::Pictures { name, format, written } => {
                 *written += 1;
                 let path = name.numbered(*written);
                 let picture = Destination::File { path, encoding: (*format).into(), is_named: true };
-                picture.write(image, self.tone, &Metadata::default(), &self.cancel)
+                picture.write(image, self.tone, metadata, &self.cancel)
             }
             Kind::Animation { path, writer, .. } => {
                 let codes = self.tone.to_codes8(image);

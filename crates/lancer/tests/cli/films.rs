@@ -2,7 +2,7 @@
 
 use crate::sandbox::{Sandbox, read_png, text};
 use image::AnimationDecoder;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 
 const SMALL: &str = "--width 12 --height 8 --samples 1 --ao 0";
 
@@ -203,6 +203,20 @@ fn a_thumbnail_of_a_scene_has_its_shape_and_its_background() {
     assert_eq!(thumbnail.pixels[0], [0x87, 0xce, 0xeb]);
     sandbox.ok("thumbnail glass -o thumb.png");
     assert_eq!(read_png(&sandbox.path("thumb.png")).width, 256);
+}
+
+/// File managers make the file, and some read it through the descriptor by which they did.
+#[test]
+fn an_empty_file_is_filled_with_the_thumbnail_in_place() {
+    let sandbox = Sandbox::new();
+    sandbox.ok("thumbnail model.obj -o another.png --size 24");
+    sandbox.write("thumb.png", "");
+    let mut held = std::fs::File::open(sandbox.path("thumb.png")).unwrap();
+    sandbox.ok("thumbnail model.obj -o thumb.png --size 24");
+    let mut found = Vec::new();
+    held.read_to_end(&mut found).unwrap();
+    assert!(found == sandbox.read("another.png"));
+    assert_eq!(sandbox.new_files(), ["another.png", "thumb.png"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Renders that are stopped in the middle.
 
-use crate::sandbox::{Sandbox, text};
+use crate::sandbox::{Sandbox, read_png, text};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::process::{Child, Stdio};
@@ -66,6 +66,29 @@ fn a_second_ctrl_c_does_not_wait_for_the_pixel() {
     assert!(asked.elapsed() < Duration::from_secs(5));
     assert_eq!(output.status.code(), Some(130));
     assert_eq!(sandbox.new_files(), [""; 0]);
+}
+
+/// The pictures before the one at which it was stopped are whole, and there is no other file.
+#[test]
+fn a_film_that_is_stopped_leaves_whole_pictures_and_no_half_film() {
+    let sandbox = Sandbox::new();
+    let film = "turntable scene.yaml --frames 100000 --width 60 --height 40 --samples 2 --ao 8";
+    for output in ["frame_%06d.png", "film.gif", "film.png"] {
+        let child = start(&sandbox, &format!("{film} -o {output}"));
+        sleep(Duration::from_millis(1500));
+        send(&child, Signal::SIGINT);
+        let asked = Instant::now();
+        let output = child.wait_with_output().unwrap();
+        assert!(asked.elapsed() < Duration::from_secs(5));
+        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(130), "interrupted\n"));
+    }
+    let pictures = sandbox.new_files();
+    assert!(!pictures.is_empty());
+    for (index, name) in pictures.iter().enumerate() {
+        assert_eq!(*name, format!("frame_{:06}.png", index + 1));
+        let picture = read_png(&sandbox.path(name));
+        assert_eq!((picture.width, picture.height), (60, 40));
+    }
 }
 
 #[test]

@@ -48,6 +48,54 @@ fn every_setting_is_recorded() {
 }
 
 #[test]
+fn numbered_pictures_of_a_film_agree_with_themselves() {
+    let sandbox = Sandbox::new();
+    let small = "--frames 5 --width 12 --height 8 --set camera.fov=50";
+    sandbox.ok(&format!("turntable scene.yaml -o orbit_%d.png --axis x {small}"));
+    sandbox.ok(&format!("turntable scene.yaml -o top_%d.exr --camera top {small}"));
+    sandbox.ok(&format!("turntable scene.yaml -o path_%d.tif --path main,top,main {small}"));
+    sandbox.ok("turntable model.obj -o model_%d.png --frames 3 --width 12 --height 8");
+    for name in ["orbit_1.png", "orbit_4.png", "top_2.exr", "path_3.tif", "path_4.tif", "model_2.png"] {
+        let told = sandbox.json(&format!("verify {name} --json"));
+        assert_eq!(
+            (&told["same_bytes"], &told["same_scene"]),
+            (&Value::Bool(true), &Value::Bool(true)),
+            "{name}"
+        );
+    }
+    sandbox.ok("turntable scene.yaml -o film.png --frames 2 --width 12 --height 8");
+    assert!(sandbox.fails(3, "verify film.png").contains("films in one file"));
+}
+
+#[test]
+fn files_with_layers_agree_with_themselves() {
+    let sandbox = Sandbox::new();
+    let render = "render scene.yaml --set lights.0.name=key --region 2,3,12,10";
+    sandbox.ok(&format!("{render} -o all.exr --passes all --compression piz"));
+    sandbox.ok(&format!("{render} -o some.exr --passes light.key,depth --exposure 0.5"));
+    sandbox.ok(&format!("{render} -o each.exr --passes ambient,cost,depth --separate-passes"));
+    for name in ["all.exr", "some.exr", "each.exr", "each.ambient.exr", "each.cost.exr", "each.depth.exr"] {
+        let told = text(&sandbox.ok(&format!("verify {name}")).stdout);
+        assert!(told.contains("byte for byte"), "{name}: {told}");
+    }
+}
+
+#[test]
+fn layers_that_differ_are_told_by_their_channels() {
+    let sandbox = Sandbox::new();
+    sandbox.ok("render model.obj -o model.exr --width 24 --height 16 --passes ambient,object_id,cost");
+    // The picture and its terms are the same; how much work it was is not.
+    let told = differs(&sandbox, "model.exr --accel brute-force");
+    assert_eq!((&told["same_pixels"], &told["same_scene"]), (&Value::Bool(false), &Value::Bool(true)));
+    let channels = told["channels"].as_array().unwrap();
+    assert!(!channels.is_empty() && channels.iter().all(|name| name.as_str().unwrap().starts_with("cost.")));
+    sandbox.ok("render scene.yaml -o a.exr --passes ambient,object_id");
+    sandbox.write("scene.yaml", SCENE.replace("ambient: 0.2", "ambient: 0.25"));
+    let channels = differs(&sandbox, "a.exr")["channels"].to_string();
+    assert!(channels.contains("ambient.R") && !channels.contains("object_id"), "{channels}");
+}
+
+#[test]
 fn a_changed_scene_is_told_with_how_far_the_pixels_are_apart() {
     let sandbox = Sandbox::new();
     sandbox.ok("render scene.yaml -o a.png");

@@ -1,11 +1,13 @@
 //! OpenEXR: R, G and B as linear floats of 32 or 16 bits, in scan lines.
 
 use super::super::format::Compression;
+use super::super::metadata::Window;
 use super::{Encoding, Metadata};
 use ::exr::error::Error;
 use ::exr::prelude::{
-    AttributeValue, Blocks, Compression as ExrCompression, Encoding as ExrEncoding, Image as ExrImage, Layer,
-    LayerAttributes, LineOrder, SpecificChannels, Text, Vec2, WritableImage, f16,
+    AttributeValue, Blocks, Compression as ExrCompression, Encoding as ExrEncoding, Image as ExrImage,
+    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, SpecificChannels, Text, Vec2,
+    WritableImage, f16,
 };
 use lancer_core::film::Image;
 use std::io::{self, Cursor, Write};
@@ -26,11 +28,11 @@ pub(super) fn write(
     let (attributes, layout) = (attributes(metadata), layout(encoding.compression()));
     let written = if encoding.bits() == 16 {
         let channels = SpecificChannels::rgb(|at| <(f16, f16, f16)>::from(pixel(at).map(half)));
-        let image = ExrImage::from_layer(Layer::new(size, attributes, layout, channels));
+        let image = placed(Layer::new(size, attributes, layout, channels), metadata);
         image.write().non_parallel().to_buffered(&mut bytes)
     } else {
         let channels = SpecificChannels::rgb(|at| <(f32, f32, f32)>::from(pixel(at)));
-        let image = ExrImage::from_layer(Layer::new(size, attributes, layout, channels));
+        let image = placed(Layer::new(size, attributes, layout, channels), metadata);
         image.write().non_parallel().to_buffered(&mut bytes)
     };
     written.map_err(|error| match error {
@@ -51,6 +53,7 @@ pub(in super::super) fn attributes(metadata: &Metadata) -> LayerAttributes {
         software_name: Text::new_or_none(&metadata.software),
         comments: Some(metadata.title.as_str()).filter(|title| !title.is_empty()).and_then(Text::new_or_none),
         horizontal_density: metadata.dpi.map(f32::from),
+        layer_position: metadata.window.map_or(Vec2(0, 0), |window| Vec2(window.x as i32, window.y as i32)),
         ..LayerAttributes::default()
     };
     // One at most: more would be written in an order that differs from run to run.
@@ -59,6 +62,17 @@ pub(in super::super) fn attributes(metadata: &Metadata) -> LayerAttributes {
         .other
         .extend(provenance.map(|provenance| (Text::from(PROVENANCE), AttributeValue::Text(provenance))));
     attributes
+}
+
+/// A layer as a file. The data window is the layer's; the display window is that of the picture of which it is a part.
+pub(in super::super) fn placed<C>(layer: Layer<C>, metadata: &Metadata) -> ExrImage<Layer<C>> {
+    let whole = match metadata.window {
+        Some(Window { width, height, .. }) => {
+            IntegerBounds::from_dimensions((width as usize, height as usize))
+        }
+        None => IntegerBounds::new(layer.attributes.layer_position, layer.size),
+    };
+    ExrImage { attributes: ImageAttributes::new(whole), layer_data: layer }
 }
 
 /// How pixels are packed.

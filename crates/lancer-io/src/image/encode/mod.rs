@@ -15,7 +15,7 @@ mod tiff;
 mod webp;
 
 pub(super) use self::exr::PROVENANCE as EXR_PROVENANCE;
-pub(super) use self::exr::{attributes as exr_attributes, layout as exr_layout};
+pub(super) use self::exr::{attributes as exr_attributes, layout as exr_layout, placed as exr_placed};
 pub(super) use self::png::PROVENANCE as PNG_PROVENANCE;
 pub use self::png::{write_png, write_texture};
 

@@ -8,10 +8,7 @@ use lancer_core::film::Image;
 use std::io::Cursor;
 
 pub(super) fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| message_of(&error))?;
-    for header in &meta.headers {
-        check_size(header.layer_size.x() as u64, header.layer_size.y() as u64, most_pixels)?;
-    }
+    check_sizes(bytes, most_pixels)?;
     let read = ::exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -28,6 +25,13 @@ pub(super) fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
         .map_err(|error| message_of(&error))?;
     let values = read.layer_data.channel_data.pixels;
     Ok(Picture { values, is_linear: true, codes: None })
+}
+
+/// Refuses a file with a layer of more pixels, by its headers.
+pub(in super::super) fn check_sizes(bytes: &[u8], most_pixels: u64) -> Result<(), String> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| message_of(&error))?;
+    let mut sizes = meta.headers.iter().map(|header| header.layer_size);
+    sizes.try_for_each(|size| check_size(size.x() as u64, size.y() as u64, most_pixels))
 }
 
 /// What the attributes of a layer say.

@@ -6,6 +6,8 @@
 mod exr;
 mod pfm;
 
+pub(super) use self::exr::check_sizes as exr_check_sizes;
+
 use super::decode::{decoder_limits, message_of};
 use super::{HDR_PROVENANCE, encode, exif};
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -16,6 +18,7 @@ use ::image::codecs::webp::WebPDecoder;
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use lancer_core::color::linear_to_srgb;
 use lancer_core::film::Image;
+use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -35,11 +38,14 @@ pub struct Picture {
 
 impl Picture {
     /// The values as a display is sent them: sRGB from 0 to 1.
-    pub fn to_display(&self) -> Image {
+    pub fn to_display(&self) -> Cow<'_, Image> {
         let unit = |value: f32| f64::from(value.clamp(0.0, 1.0).max(0.0));
         match self.is_linear {
-            true => self.values.map(|pixel| pixel.map(|value| linear_to_srgb(unit(value)) as f32)),
-            false => self.values.clone(),
+            true => {
+                let shown = self.values.map(|pixel| pixel.map(|value| linear_to_srgb(unit(value)) as f32));
+                Cow::Owned(shown)
+            }
+            false => Cow::Borrowed(&self.values),
         }
     }
 }

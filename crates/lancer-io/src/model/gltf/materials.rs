@@ -32,7 +32,7 @@ use super::textures::Textures;
 use crate::model::text::kept_name;
 use lancer_core::Rgb;
 use lancer_core::geometry::portable;
-use lancer_core::scene::{ImageTexture, Material, Texture};
+use lancer_core::scene::{ImageTexture, Material, Texture, Wrap};
 use std::sync::Arc;
 
 /// The largest exponent: its highlight is smaller than a pixel, and it keeps (n + 2)/2 harmless.
@@ -48,8 +48,6 @@ pub(super) struct UvMapping {
     pub(super) set: u32,
     /// An affine map by rows, as bits.
     rows: [[u64; 3]; 2],
-    /// The wrapping modes along u and v, where they are not repetition.
-    wrap: [Option<&'static str>; 2],
 }
 
 impl UvMapping {
@@ -61,16 +59,6 @@ impl UvMapping {
         };
         [row(self.rows[0]), 1.0 - row(self.rows[1])]
     }
-
-    /// Warns of coordinates that leave the image where it should not be repeated.
-    pub(super) fn warn_of_wrapping(&self, uvs: &[[f32; 2]], at: &str, warnings: &mut Warnings) {
-        for (axis, mode) in self.wrap.iter().enumerate() {
-            let Some(mode) = mode else { continue };
-            if uvs.iter().any(|uv| !(-1e-3..=1.001).contains(&uv[axis])) {
-                warnings.add(at, format!("its texture is repeated, not {mode}"));
-            }
-        }
-    }
 }
 
 /// A material, and where its texture takes its coordinates from.
@@ -79,11 +67,17 @@ pub(super) struct Converted {
     pub(super) mapping: Option<UvMapping>,
 }
 
+/// An image, and what lies beyond it.
+struct Placed {
+    image: Arc<ImageTexture>,
+    wrap: [Wrap; 2],
+}
+
 /// What any of the two models says of a surface.
 struct Surface {
     color: Rgb,
     opacity: f64,
-    image: Option<Arc<ImageTexture>>,
+    image: Option<Placed>,
     /// M and r.
     metallic: f64,
     roughness: f64,
@@ -193,7 +187,10 @@ fn material(name: String, written: &document::Material, surface: &Surface, ior: 
     let transmission = transmission * (1.0 - metallic);
     // An image's factor cannot be in S.
     let (texture, tint, mean) = match image {
-        Some(image) => (Texture::Image(Arc::clone(image)), color, color * mean_color(image)),
+        Some(Placed { image, wrap }) => {
+            let texture = Texture::Image { image: Arc::clone(image), wrap: *wrap };
+            (texture, color, color * mean_color(image))
+        }
         None => (color.into(), Rgb::WHITE, color),
     };
     if extensions.unlit.is_some() {
@@ -290,18 +287,16 @@ fn image_of(
     textures: &mut Textures,
     warnings: &mut Warnings,
     mapping: &mut Option<UvMapping>,
-) -> Result<Option<Arc<ImageTexture>>> {
+) -> Result<Option<Placed>> {
     let Some(info) = info else { return Ok(None) };
     let at = format!("{at}/{name}");
-    let image = textures.load(info.index, &at, warnings)?;
-    if image.is_some() {
-        *mapping = Some(mapping_of(info, document, &at)?);
-    }
-    Ok(image)
+    let Some(image) = textures.load(info.index, &at, warnings)? else { return Ok(None) };
+    *mapping = Some(mapping_of(info, &at)?);
+    Ok(Some(Placed { image, wrap: wrap_of(info.index, document)? }))
 }
 
 /// Source: the README of KHR_texture_transform; u grows to the right and v downward.
-fn mapping_of(info: &TextureInfo, document: &Document, at: &str) -> Result<UvMapping> {
+fn mapping_of(info: &TextureInfo, at: &str) -> Result<UvMapping> {
     let transform = info.extensions.transform.as_ref();
     let [dx, dy] = transform.and_then(|t| t.offset).unwrap_or_default();
     let [sx, sy] = transform.and_then(|t| t.scale).unwrap_or([1.0; 2]);
@@ -310,23 +305,24 @@ fn mapping_of(info: &TextureInfo, document: &Document, at: &str) -> Result<UvMap
     if !rows.as_flattened().iter().all(|x| x.abs() <= 1e9) {
         return Err(Fault::new(at, "its KHR_texture_transform is out of all range"));
     }
-    let sampler = document.textures.get(info.index).and_then(|texture| texture.sampler);
-    let sampler = match sampler {
-        Some(index) => {
-            Some(entry(&document.samplers, "samplers", index, format!("/textures/{}/sampler", info.index))?)
-        }
-        None => None,
-    };
-    let wrap = |code: Option<u32>| match code {
-        Some(33071) => Some("clamped"),
-        Some(33648) => Some("mirrored"),
-        _ => None,
-    };
     Ok(UvMapping {
         set: transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord),
         rows: rows.map(|row| row.map(f64::to_bits)),
-        wrap: [wrap(sampler.and_then(|s| s.wrap_s)), wrap(sampler.and_then(|s| s.wrap_t))],
     })
+}
+
+/// What lies beyond the image of a texture, along u and v: as in OpenGL, whose codes its sampler writes.
+fn wrap_of(texture: usize, document: &Document) -> Result<[Wrap; 2]> {
+    let Some(sampler) = document.textures.get(texture).and_then(|texture| texture.sampler) else {
+        return Ok([Wrap::Repeat; 2]);
+    };
+    let sampler = entry(&document.samplers, "samplers", sampler, format!("/textures/{texture}/sampler"))?;
+    let wrap = |code: Option<u32>| match code {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    Ok([wrap(sampler.wrap_s), wrap(sampler.wrap_t)])
 }
 
 /// The mean of an image's bytes, as fractions.

@@ -174,7 +174,6 @@ impl<'a> MeshMaker<'a> {
         if let Some((uvs, mapping)) = uvs {
             let mapped = used.iter().map(|&vertex| mapping.apply(uvs.get(vertex)));
             data.uvs = mapped.map(|uv| uv.map(|x| x as f32)).collect();
-            mapping.warn_of_wrapping(&data.uvs, at, warnings);
         }
         if let Some(colors) = colors {
             data.colors = used.iter().map(|&vertex| colors.get(vertex).map(|x| clamped(x) as f32)).collect();

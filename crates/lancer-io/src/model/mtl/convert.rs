@@ -5,6 +5,7 @@
 //! | Kd | S, with k_d = k_a = d |
 //! | map_Kd | S is the image, with k_d = k_a = d Kd; a black or absent Kd counts as white |
 //! | -s, -o of map_Kd | the texture coordinates of the mesh, times the scale, plus the offset |
+//! | -clamp on of map_Kd | beyond the image, its outermost pixels |
 //! | Ka | nothing: most files have 0 or 1 whatever the material, so the ambient light follows S |
 //! | Ks, Ns | k_s = 2 Ks / (Ns + 2), n = Ns, m = 0; no highlight under illum 0 and 1, or for Ns < 1 |
 //! | d, Tr | opacity: d, or else 1 - Tr, or else 1 |
@@ -21,8 +22,7 @@
 
 use super::parse::Definition;
 use lancer_core::Rgb;
-use lancer_core::scene::{ImageTexture, Material, Texture};
-use std::sync::Arc;
+use lancer_core::scene::{Material, Texture};
 
 /// The illumination models of MTL that differ here, by what they turn on.
 struct Illumination {
@@ -47,14 +47,14 @@ impl Illumination {
     }
 }
 
-/// The material that a definition and the image of its map_Kd mean.
-pub(super) fn material(definition: &Definition, image: Option<Arc<ImageTexture>>) -> Material {
+/// The material that a definition and its map_Kd mean; `None` where it has none, or its image cannot be had.
+pub(super) fn material(definition: &Definition, map_kd: Option<Texture>) -> Material {
     let illumination = Illumination::of(definition.illum);
     let opacity = opacity(definition);
     let kd = clamped(definition.diffuse.unwrap_or(DEFAULT_DIFFUSE));
     let ks = clamped(definition.specular.unwrap_or(Rgb::BLACK));
-    let (color, tint) = match image {
-        Some(image) => (Texture::Image(image), tint_of_image(definition)),
+    let (color, tint) = match map_kd {
+        Some(texture) => (texture, tint_of_image(definition)),
         // The image was to give the colour, and it is missing: black would hide the part.
         None if definition.map_kd.is_some() && kd.is_black() => (DEFAULT_DIFFUSE.into(), Rgb::WHITE),
         None => (kd.into(), Rgb::WHITE),
@@ -128,6 +128,8 @@ fn clamped(color: Rgb) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lancer_core::scene::ImageTexture;
+    use std::sync::Arc;
 
     fn definition(illum: u32) -> Definition {
         let specular = Some(Rgb::grey(0.5));
@@ -181,8 +183,8 @@ mod tests {
 
     #[test]
     fn an_image_is_tinted_by_kd_unless_that_is_black() {
-        let image = Arc::new(ImageTexture::new(1, 1, vec![[9; 3]]).unwrap());
-        let tinted = material(&definition(1), Some(Arc::clone(&image)));
+        let image = Texture::from(Arc::new(ImageTexture::new(1, 1, vec![[9; 3]]).unwrap()));
+        let tinted = material(&definition(1), Some(image.clone()));
         assert_eq!(tinted.diffuse, Rgb::grey(0.4));
         let black = Definition { diffuse: Some(Rgb::BLACK), ..Definition::default() };
         assert_eq!(material(&black, Some(image)).diffuse, Rgb::WHITE);

@@ -16,7 +16,7 @@ use super::text::{Reference, Source, quoted};
 use crate::diagnostics::Diagnostic;
 use crate::image::load_texture;
 use crate::resolver::Resolver;
-use lancer_core::scene::{ImageTexture, Material};
+use lancer_core::scene::{ImageTexture, Material, Texture};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,7 +60,8 @@ impl MaterialLibrary {
             let map = definition.map_kd.as_ref();
             let image = map.and_then(|map| textures.load(path, &map.file, warnings));
             library.index_by_name.insert(name.to_owned(), library.materials.len());
-            library.materials.push(material(definition, image));
+            let texture = image.zip(map).map(|(image, map)| Texture::Image { image, wrap: [map.wrap; 2] });
+            library.materials.push(material(definition, texture));
             library.placements.push(map.map_or(UvPlacement::IDENTITY, |map| map.placement));
         }
         // Where a library is missing, that has been told, and its materials need not be.

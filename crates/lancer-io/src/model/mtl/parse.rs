@@ -7,6 +7,7 @@ use crate::model::polygons::UvPlacement;
 use crate::model::report::PassedOver;
 use crate::model::text::{Cursor, Source, Word, decode};
 use lancer_core::Rgb;
+use lancer_core::scene::Wrap;
 
 /// A material as its library writes it; `None` for what it leaves out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,6 +38,8 @@ pub(super) struct Map {
     pub(super) file: String,
     /// Where it lies.
     pub(super) placement: UvPlacement,
+    /// What lies beyond it.
+    pub(super) wrap: Wrap,
 }
 
 /// What a library may hold that is not drawn.
@@ -146,7 +149,7 @@ impl<'a> Parser<'a> {
 
     /// A map statement: options, then the file's name.
     fn map(&mut self) -> Option<Map> {
-        let mut placement = UvPlacement::IDENTITY;
+        let (mut placement, mut wrap) = (UvPlacement::IDENTITY, Wrap::Repeat);
         loop {
             let before = self.cursor.clone();
             let option = self.cursor.word()?;
@@ -162,9 +165,12 @@ impl<'a> Parser<'a> {
                     (1..count).for_each(|_| {
                         self.cursor.word();
                     });
-                    let is_off = first.is_some_and(|word| word.bytes == b"off");
-                    if CHANGES_THE_PICTURE.contains(&option.bytes) && !is_off {
-                        self.passed_over.add(Kind::MapOption, option);
+                    match option.bytes {
+                        b"-clamp" if first.is_some_and(|word| word.bytes == b"on") => wrap = Wrap::Clamp,
+                        b"-clamp" => wrap = Wrap::Repeat,
+                        b"-mm" => self.passed_over.add(Kind::MapOption, option),
+                        // The others choose a filter or a channel.
+                        _ => {}
                     }
                 }
                 (_, None) => {
@@ -174,7 +180,7 @@ impl<'a> Parser<'a> {
             }
         }
         let file = decode(self.cursor.rest_of_line().bytes).trim_matches('"').to_owned();
-        (!file.is_empty()).then_some(Map { file, placement })
+        (!file.is_empty()).then_some(Map { file, placement, wrap })
     }
 
     /// The first two of at most three numbers; the third is for solid textures. Those that are absent are `missing`.
@@ -198,9 +204,6 @@ enum OptionValues {
     Words(usize),
     UpTo3Numbers,
 }
-
-/// Map options of a number of words whose absence shows; the others choose a filter or a channel.
-const CHANGES_THE_PICTURE: [&[u8]; 2] = [b"-mm", b"-clamp"];
 
 fn values_of_option(word: &[u8]) -> Option<OptionValues> {
     match word {
@@ -281,10 +284,19 @@ mod tests {
     }
 
     #[test]
+    fn clamping_is_off_unless_it_is_said_to_be_on() {
+        let wrap = |statement| placed_map_of(statement).unwrap().wrap;
+        assert_eq!(wrap("map_Kd -clamp on a.png"), Wrap::Clamp);
+        assert_eq!(wrap("map_Kd -s 2 2 -clamp on -o 1 a.png"), Wrap::Clamp);
+        assert_eq!(wrap("map_Kd -clamp off a.png"), Wrap::Repeat);
+        assert_eq!(wrap("map_Kd a.png"), Wrap::Repeat);
+    }
+
+    #[test]
     fn what_is_not_drawn_is_told_once_a_kind() {
         let (_, warnings) = parse(
-            "Kd 1 1 1\nnewmtl a\nKd nan 0 0\nKe 1 1 1\nKe 0 0 0\nmap_Bump b.png\nbump b.png\nmap_Kd -clamp on a.png\n\
-             map_Kd -clamp off -mm 0 1 a.png\nmap_d d.png\n",
+            "Kd 1 1 1\nnewmtl a\nKd nan 0 0\nKe 1 1 1\nKe 0 0 0\nmap_Bump b.png\nbump b.png\nmap_Kd -t 1 a.png\n\
+             map_Kd -clamp on -mm 0 1 a.png\nmap_d d.png\n",
         );
         let lines = warnings.iter().map(|warning| warning.location.unwrap().line).collect::<Vec<_>>();
         assert_eq!(lines, [1, 3, 4, 6, 8, 10]);

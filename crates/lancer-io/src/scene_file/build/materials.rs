@@ -2,10 +2,12 @@
 
 use super::{Builder, Source, problems_of_reference};
 use crate::scene_file::deserialize::Spanned;
-use crate::scene_file::model::{MaterialFile, MaterialReference, Named, Pattern, SurfaceColor};
+use crate::scene_file::model::{
+    ImageFile, ImageReference, MaterialFile, MaterialReference, Named, Pattern, SurfaceColor,
+};
 use crate::scene_file::syntax::Problem;
 use lancer_core::Rgb;
-use lancer_core::scene::{ImageTexture, Material, MaterialId, Texture};
+use lancer_core::scene::{ImageTexture, Material, MaterialId, Texture, Wrap};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -74,7 +76,8 @@ pub(crate) fn material(
             Texture::Checker { even: checker.even.0, odd: checker.odd.0, size: checker.size.get() }
         }
         SurfaceColor::Pattern(Pattern::Image(image)) => {
-            fetch(image).map_or(Texture::Solid(Rgb::WHITE), Texture::Image)
+            let (file, wrap) = file_and_wrap(image);
+            fetch(&file).map_or(Texture::Solid(Rgb::WHITE), |image| Texture::Image { image, wrap })
         }
     };
     Material {
@@ -89,5 +92,16 @@ pub(crate) fn material(
         transmit: file.transmit.get(),
         ior: file.ior.get(),
         fresnel: file.fresnel,
+    }
+}
+
+/// What a scene file says of an image: its file, and what lies beyond it.
+fn file_and_wrap(image: &Spanned<ImageReference>) -> (Spanned<String>, [Wrap; 2]) {
+    match &image.value {
+        ImageReference::Path(path) => {
+            let Spanned { place, is_whole, .. } = *image;
+            (Spanned { place, is_whole, value: path.clone() }, [Wrap::Repeat; 2])
+        }
+        ImageReference::Detailed(ImageFile { file, wrap }) => (file.clone(), wrap.0),
     }
 }

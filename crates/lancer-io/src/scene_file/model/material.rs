@@ -4,10 +4,11 @@ use super::channels::{Channels, Color};
 use super::number::{Fraction, NotNegative, Number, Positive};
 use crate::scene_file::deserialize::{Forms, OneOf, Spanned};
 use lancer_core::Rgb;
-use lancer_core::scene::Material;
+use lancer_core::scene::{Material, Wrap};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, SeqAccess};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, Error, SeqAccess, Unexpected};
 use std::borrow::Cow;
 
 /// How a surface reflects and refracts light. Coefficients are one number, or one for each of red, green and
@@ -66,10 +67,115 @@ pub(crate) enum SurfaceColor {
 #[derive(Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Pattern {
-    /// The path of an image, which is repeated over the surface.
-    Image(Spanned<String>),
+    /// An image.
+    Image(Spanned<ImageReference>),
     /// Squares of two colours.
     Checker(Checker),
+}
+
+/// An image by its path, which is repeated, or with what lies beyond it.
+pub(crate) enum ImageReference {
+    Path(String),
+    Detailed(ImageFile),
+}
+
+/// An image with what lies beyond it.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Image")]
+pub(crate) struct ImageFile {
+    /// The path of the image.
+    pub(crate) file: Spanned<String>,
+    /// What lies beyond the image, or a list of what lies beyond it along u and along v; default repeat.
+    #[serde(default)]
+    pub(crate) wrap: WrapFile,
+}
+
+/// What lies beyond an image, along u and along v.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct WrapFile(pub(crate) [Wrap; 2]);
+
+/// What lies beyond an image along one axis.
+struct AxisWrap(Wrap);
+
+impl Forms for ImageReference {
+    const FORMS: &'static str = "text that names an image's file, or {file: PATH, wrap: clamp}";
+
+    fn from_text<E: Error>(text: &str) -> Result<Self, E> {
+        Ok(Self::Path(text.into()))
+    }
+
+    fn from_mapping<'de, D: Deserializer<'de>>(mapping: D) -> Result<Self, D::Error> {
+        ImageFile::deserialize(mapping).map(Self::Detailed)
+    }
+}
+
+impl Forms for WrapFile {
+    const FORMS: &'static str = "repeat, clamp, mirror or a list of two of them";
+
+    fn from_text<E: Error>(text: &str) -> Result<Self, E> {
+        AxisWrap::from_text(text).map(|AxisWrap(wrap)| Self([wrap; 2]))
+    }
+
+    fn from_list<'de, A: SeqAccess<'de>>(list: A) -> Result<Self, A::Error> {
+        let axes = <[AxisWrap; 2]>::deserialize(SeqAccessDeserializer::new(list))?;
+        Ok(Self(axes.map(|AxisWrap(wrap)| wrap)))
+    }
+}
+
+impl Forms for AxisWrap {
+    const FORMS: &'static str = "repeat, clamp or mirror";
+
+    fn from_text<E: Error>(text: &str) -> Result<Self, E> {
+        Wrap::from_name(text).map(Self).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &Self::FORMS))
+    }
+}
+
+impl<'de> Deserialize<'de> for ImageReference {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        OneOf::deserialize(deserializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for WrapFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        OneOf::deserialize(deserializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for AxisWrap {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        OneOf::deserialize(deserializer)
+    }
+}
+
+impl JsonSchema for ImageReference {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "ImageReference".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "string" }, generator.subschema_for::<ImageFile>()] })
+    }
+}
+
+impl JsonSchema for WrapFile {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Wrap".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let name = json_schema!({ "enum": Wrap::ALL.map(Wrap::name) });
+        json_schema!({ "anyOf": [name, { "type": "array", "items": name, "minItems": 2, "maxItems": 2 }] })
+    }
 }
 
 /// Squares of two colours.

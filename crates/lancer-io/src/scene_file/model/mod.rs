@@ -12,7 +12,7 @@ mod settings;
 mod transform;
 
 pub(crate) use channels::Color;
-pub(crate) use material::{MaterialFile, Pattern, SurfaceColor};
+pub(crate) use material::{ImageFile, ImageReference, MaterialFile, Pattern, SurfaceColor};
 pub(crate) use named::Named;
 pub(crate) use node::{
     DetailedShape, MaterialReference, MeshFile, MeshReference, NodeFile, ShapeFile, SimpleShape,

@@ -70,7 +70,7 @@ impl Parts {
             }
         }
         for material in scene.materials() {
-            if let Texture::Image(image) = &material.color {
+            if let Texture::Image { image, .. } = &material.color {
                 let part = |reference| Part::Image { reference, image: Arc::clone(image) };
                 parts.add(address(image), "png", part, folder, &material.name)?;
             }

@@ -8,9 +8,10 @@ use super::parts::Parts;
 use crate::scene_file::model::FORMAT;
 use crate::scene_file::syntax::Node as Syntax;
 use lancer_core::geometry::Transform;
-use lancer_core::scene::{Material, Node, NodeId, Scene, Shape, Texture};
+use lancer_core::scene::{ImageTexture, Material, Node, NodeId, Scene, Shape, Texture, Wrap};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// The tree of a scene, whose meshes and images are `parts`.
 pub(super) fn of_scene(scene: &Scene, parts: &Parts) -> Rc<Syntax> {
@@ -52,11 +53,22 @@ struct Writer<'a> {
 impl Writer<'_> {
     fn material(&self, material: &Material) -> Rc<Syntax> {
         let color = match &material.color {
-            Texture::Image(image) => Some(mapping([("image", text(self.parts.image(image)))])),
+            Texture::Image { image, wrap } => Some(mapping([("image", self.image(image, *wrap))])),
             other => of_texture(other, short_rgb),
         };
         let entries = material_entries(material, short_rgb);
         mapping(color.map(|color| ("color", color)).into_iter().chain(entries))
+    }
+
+    /// An image by its reference, and how it is wrapped, unless it is repeated.
+    fn image(&self, image: &Arc<ImageTexture>, wrap: [Wrap; 2]) -> Rc<Syntax> {
+        let file = text(self.parts.image(image));
+        let name = |wrap: Wrap| text(wrap.name());
+        match wrap {
+            [Wrap::Repeat, Wrap::Repeat] => file,
+            [u, v] if u == v => mapping([("file", file), ("wrap", name(u))]),
+            axes => mapping([("file", file), ("wrap", list(axes.map(name)))]),
+        }
     }
 
     fn reference_or_node(&self, id: NodeId) -> Rc<Syntax> {

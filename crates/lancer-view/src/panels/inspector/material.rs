@@ -49,7 +49,7 @@ fn color(rows: &mut Rows, texture: &mut Texture, saved: &Texture) {
             rows.color(&ODD, odd, own.1);
             rows.number(&SIZE, size, own.2, 1e-6..=1e6, SPEED);
         }
-        Texture::Image(image) => {
+        Texture::Image { image, .. } => {
             let phrase = Phrase::new("S colour: an image,", "S couleur : une image,");
             rows.ui.label(format!("{} {} x {}", rows.language.say(phrase), image.width(), image.height()));
         }
