@@ -5,6 +5,8 @@
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
+use lancer_core::film::{Image, Tone};
+use lancer_io::image::{ImageFormat as PictureFormat, Metadata, encode};
 use std::error::Error;
 use std::fs;
 use std::io::{Cursor, Write};
@@ -28,9 +30,15 @@ fn main() -> Result<(), Failure> {
     put("ply", "big-endian", &ply("binary_big_endian", |x| x.to_be_bytes(), |i| i.to_be_bytes()))?;
     put("stl", "binary", &binary_stl())?;
     put("gltf", "binary", &glb())?;
-    put("gltf", "buffer", &[GLTF.replace("BYTES", &square().len().to_string()).as_bytes(), b"\n%%\n", &square()].concat())?;
+    put(
+        "gltf",
+        "buffer",
+        &[GLTF.replace("BYTES", &square().len().to_string()).as_bytes(), b"\n%%\n", &square()].concat(),
+    )?;
 
-    let text = |target: &str| TEXTS.iter().find(|text| text.0 == target).map(|text| text.2.as_bytes()).unwrap_or_default();
+    let text = |target: &str| {
+        TEXTS.iter().find(|text| text.0 == target).map(|text| text.2.as_bytes()).unwrap_or_default()
+    };
     put("archive", "gzip", &gzip("", text("ply"))?)?;
     put("archive", "gzip-named", &gzip("model.ply", text("ply"))?)?;
     put("archive", "zip", &zip(&[("chair/model.ply", text("ply")), ("readme.txt", b"a chair")])?)?;
@@ -46,8 +54,23 @@ fn main() -> Result<(), Failure> {
         put("image", &format!("bmp-{kind}"), &encoded(picture, ImageFormat::Bmp)?)?;
     }
     put("image", "png-16", &encoded(&rgba.to_rgb16().into(), ImageFormat::Png)?)?;
+    put("image", "webp-rgba", &encoded(&rgba, ImageFormat::WebP)?)?;
+    put("image", "tiff-rgb", &encoded(&rgb, ImageFormat::Tiff)?)?;
     put("image", "jpeg-rgb", &encoded(&rgb, ImageFormat::Jpeg)?)?;
     put("image", "jpeg-grey", &encoded(&rgba.to_luma8().into(), ImageFormat::Jpeg)?)?;
+    pictures(&put)
+}
+
+/// A picture of every format that Lancer writes.
+fn pictures(put: impl Fn(&str, &str, &[u8]) -> Result<(), Failure>) -> Result<(), Failure> {
+    let mut picture = Image::black(5, 3);
+    picture.put(0, 1, 5, &[[0.1, 0.5, 0.9], [2.0, 0.0, 0.2], [0.0; 3], [1.0; 3], [0.3, 0.3, 0.7]]);
+    let metadata = Metadata { provenance: Some("{}".to_owned()), ..Metadata::default() };
+    for format in PictureFormat::ALL {
+        let mut bytes = Cursor::new(Vec::new());
+        encode::write(format, &picture, Tone::default(), &metadata, &mut bytes)?;
+        put("picture", &format!("{format:?}").to_lowercase(), &bytes.into_inner())?;
+    }
     Ok(())
 }
 
@@ -113,9 +136,11 @@ fn square() -> Vec<u8> {
 
 fn glb() -> Vec<u8> {
     let buffer = square();
-    let mut json = GLTF.replace("\"uri\":\"b.bin\",", "").replace("BYTES", &buffer.len().to_string()).into_bytes();
+    let mut json =
+        GLTF.replace("\"uri\":\"b.bin\",", "").replace("BYTES", &buffer.len().to_string()).into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let chunk = |kind: &[u8; 4], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), &kind[..], bytes].concat();
+    let chunk =
+        |kind: &[u8; 4], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), &kind[..], bytes].concat();
     let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", &buffer)].concat();
     [b"glTF", &2_u32.to_le_bytes()[..], &(chunks.len() as u32 + 12).to_le_bytes(), &chunks].concat()
 }
@@ -150,7 +175,11 @@ const TEXTS: [(&str, &str, &str); 12] = [
          vn 0 0 1\ns 1\nusemtl a\nf 1/1/1 2/2/1 3//1 4\nusemtl b\nf -1/-1 -2 \\\n-3\nl 1 2\n%%\nnewmtl a\nKd 1 0 0\nmap_Kd -s 2 2 t.bmp\n\
          newmtl b\nd 0.5\nillum 7\nNs 10\n",
     ),
-    ("obj", "concave", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\ncstype bezier\ncurv 0 1 1 2\nend\n"),
+    (
+        "obj",
+        "concave",
+        "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\ncstype bezier\ncurv 0 1 1 2\nend\n",
+    ),
     (
         "mtl",
         "materials",
@@ -176,8 +205,16 @@ const TEXTS: [(&str, &str, &str); 12] = [
         "text",
         "solid thing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid thing\n",
     ),
-    ("off", "plain", "OFF\n# a seed\n4 2 5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n4 0 1 2 3 0.5 0.5 0.5 1\n"),
-    ("off", "colours", "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255 0 0\n1 0 0 0 0 1 0 255 0 255 1 0\n0 1 0 0 0 1 0 0 255 255 0 1\n3 0 1 2\n"),
+    (
+        "off",
+        "plain",
+        "OFF\n# a seed\n4 2 5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n4 0 1 2 3 0.5 0.5 0.5 1\n",
+    ),
+    (
+        "off",
+        "colours",
+        "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255 0 0\n1 0 0 0 0 1 0 255 0 255 1 0\n0 1 0 0 0 1 0 0 255 255 0 1\n3 0 1 2\n",
+    ),
     (
         "three_mf",
         "model",

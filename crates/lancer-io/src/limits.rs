@@ -9,10 +9,15 @@ pub struct Limits {
     pub file_bytes: u64,
     /// The most triangles of one model.
     pub triangles: usize,
-    /// The most bytes that the triangles of one model may take while it is read, with all that is needed to make
-    /// them. About 150 to 200 a triangle are usual.
+    /// The most bytes that one model may take while it is read: its triangles with all that is needed to make them, its
+    /// nodes and materials. About 150 to 200 a triangle are usual. A packed file is granted less: 256 MiB, or what is
+    /// worth its size.
     pub memory: u64,
-    /// The most pixels of one texture.
+    /// The most objects that a scene draws, each counted as often as it is drawn: a small file may place one a billion
+    /// times. A world takes about 300 bytes for each.
+    pub objects: u64,
+    /// The most pixels of one texture. All textures of a scene may hold as many together, or more where their files are
+    /// large: 24 for each byte.
     pub texture_pixels: u64,
     /// The most nodes of a scene file's syntax tree, aliases expanded.
     pub syntax_nodes: usize,
@@ -28,6 +33,7 @@ impl Default for Limits {
             file_bytes: 8 << 30,
             triangles: 200_000_000,
             memory: 16 << 30,
+            objects: 1 << 20,
             texture_pixels: 1 << 26,
             syntax_nodes: 4_000_000,
             nesting: 200,
@@ -42,19 +48,21 @@ enum Name {
     FileBytes,
     Triangles,
     Memory,
+    Objects,
     TexturePixels,
     Errors,
 }
 
 impl Name {
-    const ALL: [Self; 5] =
-        [Self::FileBytes, Self::Triangles, Self::Memory, Self::TexturePixels, Self::Errors];
+    const ALL: [Self; 6] =
+        [Self::FileBytes, Self::Triangles, Self::Memory, Self::Objects, Self::TexturePixels, Self::Errors];
 
     fn as_str(self) -> &'static str {
         match self {
             Self::FileBytes => "file-bytes",
             Self::Triangles => "triangles",
             Self::Memory => "memory",
+            Self::Objects => "objects",
             Self::TexturePixels => "texture-pixels",
             Self::Errors => "errors",
         }
@@ -65,6 +73,7 @@ impl Name {
             Self::FileBytes => "bytes of a file",
             Self::Triangles => "triangles of a model",
             Self::Memory => "bytes of memory to read a model in",
+            Self::Objects => "objects that a scene draws",
             Self::TexturePixels => "pixels of a texture",
             Self::Errors => "errors told of a file",
         }
@@ -116,7 +125,31 @@ fn whole_number(text: &str) -> Option<u64> {
     digits.parse::<u64>().ok().filter(|_| is_plain)?.checked_mul(unit)
 }
 
+/// How many times its size a packed file may unpack to. Text compresses to a tenth, and very regular text to a
+/// fiftieth; the method itself reaches 1032, which only bombs come near.
+pub(crate) const MOST_UNPACKED: u64 = 100;
+
+/// What any file may unpack to, in bytes: small ones may be as regular as they like.
+pub(crate) const SMALL_UNPACKED: u64 = 16 << 20;
+
+/// How many times its size a packed model may take in memory. Below 200, a plain grid of triangles, of which one takes
+/// a byte, would be refused; the text of a bomb may be worth ten times its own size.
+const MOST_OF_PACKED: u64 = 200;
+
+/// What any packed model may take in memory, in bytes: about two million triangles.
+const SMALL_OF_PACKED: u64 = 256 << 20;
+
 impl Limits {
+    /// The limits for what is packed in so many bytes: a small file has no right to a large model.
+    pub(crate) fn of_packed(self, packed: u64) -> Self {
+        let most = |times: u64, at_least: u64| packed.saturating_mul(times).max(at_least);
+        Self {
+            file_bytes: self.file_bytes.min(most(MOST_UNPACKED, SMALL_UNPACKED)),
+            memory: self.memory.min(most(MOST_OF_PACKED, SMALL_OF_PACKED)),
+            ..self
+        }
+    }
+
     /// Changes one limit.
     pub fn change(&mut self, LimitChange { name, value }: LimitChange) {
         let size = usize::try_from(value).unwrap_or(usize::MAX);
@@ -124,18 +157,20 @@ impl Limits {
             Name::FileBytes => self.file_bytes = value,
             Name::Triangles => self.triangles = size,
             Name::Memory => self.memory = value,
+            Name::Objects => self.objects = value,
             Name::TexturePixels => self.texture_pixels = value,
             Name::Errors => self.errors = size,
         }
     }
 
     /// The limits that may be changed by [`LimitChange`]: name, value and meaning.
-    pub fn listed(&self) -> [(&'static str, u64, &'static str); 5] {
+    pub fn listed(&self) -> [(&'static str, u64, &'static str); 6] {
         Name::ALL.map(|name| {
             let value = match name {
                 Name::FileBytes => self.file_bytes,
                 Name::Triangles => self.triangles as u64,
                 Name::Memory => self.memory,
+                Name::Objects => self.objects,
                 Name::TexturePixels => self.texture_pixels,
                 Name::Errors => self.errors as u64,
             };

@@ -9,6 +9,7 @@ use crate::resolver::Resolver;
 use crate::scene_file::{self, Assets, Origins, Override};
 use crate::showcase;
 use lancer_core::scene::{ImageTexture, Scene};
+use lancer_core::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -64,6 +65,19 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with(path: &Path, resolver: &Resolver, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    let loaded = read(path, resolver, options)?;
+    let most = resolver.limits.objects;
+    // What is wrong with the scene's tree is told when it is compiled.
+    match World::count_objects(&loaded.scene) {
+        Ok(count) if count > most => {
+            let message = format!("the scene draws {count} objects, more than {most}");
+            Err(Diagnostic::new(path, message).with_hint("--limit objects=N allows more").into())
+        }
+        _ => Ok(loaded),
+    }
+}
+
+fn read(path: &Path, resolver: &Resolver, options: &LoadOptions) -> Result<Loaded, LoadError> {
     if is_scene_file(path) {
         let bytes = resolver.read(path)?;
         let mut assets = Files { resolver: resolver.clone(), options: options.model };
@@ -75,6 +89,9 @@ pub fn load_with(path: &Path, resolver: &Resolver, options: &LoadOptions) -> Res
     let mut model = model::load(path, resolver, &options.model)?;
     let mut warnings = std::mem::take(&mut model.warnings);
     let mut scene = showcase::scene_of_model(model);
+    if scene.camera.frame().is_err() {
+        return Err(LoadError::new(path, "reaches further than numbers do, so no camera can see it"));
+    }
     if scene.tone.exposure != 0.0 {
         let stops = scene.tone.exposure;
         let message = format!("its own lights are far from 1, so the picture is exposed by {stops:+} stops");
@@ -123,5 +140,46 @@ impl Assets for Files {
 
     fn texture(&mut self, path: &Path) -> Result<Arc<ImageTexture>, LoadError> {
         load_texture(path, &self.resolver)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error_of(name: &str, text: &str, limits: Limits) -> String {
+        let resolver = Resolver::in_memory([(name.into(), text.as_bytes().to_vec())], limits);
+        load_with(name.as_ref(), &resolver, &LoadOptions::default()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn scenes_draw_no_more_objects_than_allowed() {
+        let assets = (0..21).map(|i| {
+            let below = format!("{{use: a{}}}", i + 1);
+            format!("  a{i}: {{children: [{below}, {below}]}}\n")
+        });
+        let assets = assets.collect::<String>();
+        let text = format!("format: 1\nassets:\n{assets}  a21: {{shape: cube}}\nobjects: [{{use: a0}}]\n");
+        let message = "s.yaml: the scene draws 2097152 objects, more than 1048576\n\
+                       hint: --limit objects=N allows more";
+        assert_eq!(error_of("s.yaml", &text, Limits::default()), message);
+        let resolver = Resolver::in_memory(
+            [("s.yaml".into(), text.into_bytes())],
+            Limits { objects: 1 << 21, ..Limits::default() },
+        );
+        assert!(load_with("s.yaml".as_ref(), &resolver, &LoadOptions::default()).is_ok());
+    }
+
+    #[test]
+    fn a_model_beyond_all_numbers_is_refused() {
+        let uri = "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+        let text = format!(
+            r#"{{"asset": {{"version": "2.0"}}, "nodes": [{{"children": [1], "scale": [1e100, 1e100, 1e100]}},
+            {{"mesh": 0, "scale": [1e100, 1e100, 1e100]}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}], "buffers": [{{"byteLength": 36, "uri": "{uri}"}}]}}"#
+        );
+        let error = error_of("a.gltf", &text, Limits::default());
+        assert_eq!(error, "a.gltf: reaches further than numbers do, so no camera can see it");
     }
 }

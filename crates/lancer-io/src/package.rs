@@ -7,33 +7,60 @@ use crate::limits::Limits;
 use crate::resolver::path_below;
 use flate2::read::MultiGzDecoder;
 use std::fmt;
-use std::io::{Cursor, Read};
+use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-/// How many times its packed size a file may be. Text compresses to a tenth, and very regular text to a fiftieth; the
-/// method itself reaches 1032, which only bombs come near.
-const MOST_RATIO: u64 = 200;
-
-/// What any file may be unpacked to, in bytes: small ones may be as regular as they like.
-const SMALL: u64 = 64 << 20;
-
-/// Unpacks what `reader` gives of `packed` bytes.
+/// Unpacks what `reader` gives, which has taken `consumed` packed bytes so far.
+///
+/// That is asked again and again: a bomb is left where it begins to be one.
 ///
 /// # Errors
 /// A message without a place: the bytes are broken, or unpack to more than they may.
-pub(crate) fn unpack(reader: impl Read, packed: u64, limits: &Limits) -> Result<Vec<u8>, String> {
-    let most = packed.saturating_mul(MOST_RATIO).max(SMALL).min(limits.file_bytes);
+fn unpack(mut reader: impl Read, consumed: impl Fn() -> u64, limits: &Limits) -> Result<Vec<u8>, String> {
+    const AT_ONCE: u64 = 1 << 20;
     let mut bytes = Vec::new();
-    let read = reader.take(most.saturating_add(1)).read_to_end(&mut bytes);
-    read.map_err(|error| format!("is broken: {}", error.to_string().to_lowercase()))?;
-    if bytes.len() as u64 > most {
-        return Err(format!("unpacks to more than {most} bytes, from {packed}, which is not read"));
+    loop {
+        let read = reader.by_ref().take(AT_ONCE).read_to_end(&mut bytes);
+        if read.map_err(|error| format!("is broken: {}", error.to_string().to_lowercase()))? == 0 {
+            return Ok(bytes);
+        }
+        let consumed = consumed();
+        let most = limits.of_packed(consumed).file_bytes;
+        if bytes.len() as u64 > most {
+            return Err(format!("unpacks to more than {most} bytes, from {consumed}, which is not read"));
+        }
     }
-    Ok(bytes)
+}
+
+/// Bytes that tell how far they have been read.
+#[derive(Clone)]
+struct Counted {
+    bytes: Cursor<Arc<[u8]>>,
+    read: Arc<AtomicU64>,
+}
+
+impl Counted {
+    fn new(bytes: Arc<[u8]>) -> Self {
+        Self { bytes: Cursor::new(bytes), read: Arc::default() }
+    }
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.bytes.read(buffer)?;
+        self.read.fetch_add(read as u64, Ordering::Relaxed);
+        Ok(read)
+    }
+}
+
+impl Seek for Counted {
+    fn seek(&mut self, place: SeekFrom) -> std::io::Result<u64> {
+        self.bytes.seek(place)
+    }
 }
 
 /// What stands in for the disk while a packed file is read.
@@ -44,13 +71,21 @@ pub(crate) enum Packed {
         /// The path that its content would have.
         path: PathBuf,
         /// As packed.
-        bytes: Vec<u8>,
+        bytes: Arc<[u8]>,
     },
     /// An archive, which refers to nothing outside.
     Archive(Package),
 }
 
 impl Packed {
+    /// The length of the packed file itself, in bytes.
+    pub(crate) fn length(&self) -> u64 {
+        match self {
+            Self::File { bytes, .. } => bytes.len() as u64,
+            Self::Archive(package) => package.length,
+        }
+    }
+
     /// As [`Resolver::resolve`](crate::resolver::Resolver::resolve); `None` where the disk is asked.
     pub(crate) fn resolve(&self, from: &Path, reference: &str) -> Option<Result<PathBuf, String>> {
         match self {
@@ -63,7 +98,9 @@ impl Packed {
     pub(crate) fn read(&self, path: &Path, limits: &Limits) -> Option<Result<Vec<u8>, String>> {
         match self {
             Self::File { path: content, bytes } if content == path => {
-                Some(unpack(MultiGzDecoder::new(&bytes[..]), bytes.len() as u64, limits))
+                let packed = Counted::new(Arc::clone(bytes));
+                let read = Arc::clone(&packed.read);
+                Some(unpack(MultiGzDecoder::new(packed), || read.load(Ordering::Relaxed), limits))
             }
             Self::File { .. } => None,
             Self::Archive(package) => Some(package.read(path)),
@@ -76,7 +113,9 @@ impl Packed {
 pub(crate) struct Package {
     /// The archive's own path: what is in it is called by paths below.
     path: PathBuf,
-    archive: ZipArchive<Cursor<Arc<[u8]>>>,
+    archive: ZipArchive<Counted>,
+    /// How much of it has been read.
+    read: Arc<AtomicU64>,
     limits: Limits,
     /// The archive's own length, in bytes.
     length: u64,
@@ -97,8 +136,15 @@ impl Package {
     /// A message without a place.
     pub(crate) fn new(path: &Path, bytes: Vec<u8>, limits: Limits) -> Result<Self, String> {
         let length = bytes.len() as u64;
-        let archive = ZipArchive::new(Cursor::new(bytes.into())).map_err(|error| message_of(&error))?;
-        Ok(Self { path: path.to_owned(), archive, limits, length, unpacked: Arc::default() })
+        let packed = Counted::new(bytes.into());
+        let read = Arc::clone(&packed.read);
+        let archive = ZipArchive::new(packed).map_err(|error| message_of(&error))?;
+        Ok(Self { path: path.to_owned(), archive, read, limits, length, unpacked: Arc::default() })
+    }
+
+    /// The limits for what is in it.
+    pub(crate) fn limits(&self) -> Limits {
+        self.limits.of_packed(self.length)
     }
 
     /// The names of the files in it, with `/` between folders, in the archive's order.
@@ -137,10 +183,10 @@ impl Package {
         // A copy shares the bytes; reading moves a place in them.
         let mut archive = self.archive.clone();
         let file = archive.by_index(index).map_err(|error| message_of(&error))?;
-        let packed = file.compressed_size();
-        let bytes = unpack(file, packed, &self.limits)?;
+        let before = self.read.load(Ordering::Relaxed);
+        let bytes = unpack(file, || self.read.load(Ordering::Relaxed) - before, &self.limits)?;
         // A thousand small files, each unpacked to what small ones may be, are a bomb too.
-        let most = self.length.saturating_mul(MOST_RATIO).max(SMALL);
+        let most = self.limits().file_bytes;
         let unpacked = self.unpacked.fetch_add(bytes.len() as u64, Ordering::Relaxed) + bytes.len() as u64;
         if unpacked > most {
             return Err(format!(
@@ -172,11 +218,22 @@ mod tests {
     #[test]
     fn bombs_are_not_unpacked_to_their_end() {
         let limits = Limits::default();
-        let endless = std::io::repeat(0);
-        let message = unpack(endless, 1000, &limits).unwrap_err();
-        assert_eq!(message, "unpacks to more than 67108864 bytes, from 1000, which is not read");
+        let message = unpack(std::io::repeat(0), || 1000, &limits).unwrap_err();
+        assert_eq!(message, "unpacks to more than 16777216 bytes, from 1000, which is not read");
         let limits = Limits { file_bytes: 10, ..limits };
-        assert!(unpack(&[0; 11][..], 11, &limits).is_err());
-        assert_eq!(unpack(&[0; 10][..], 10, &limits).unwrap().len(), 10);
+        assert!(unpack(&[0; 11][..], || 11, &limits).is_err());
+        assert_eq!(unpack(&[0; 10][..], || 10, &limits).unwrap().len(), 10);
+    }
+
+    #[test]
+    fn a_bomb_is_left_where_it_begins_to_be_one() {
+        let consumed = std::cell::Cell::new(0);
+        // From 1 MiB on nothing more is consumed.
+        let read = || {
+            consumed.set((consumed.get() + (1 << 18)).min(1 << 20));
+            consumed.get()
+        };
+        let message = unpack(std::io::repeat(0), read, &Limits::default()).unwrap_err();
+        assert_eq!(message, "unpacks to more than 104857600 bytes, from 1048576, which is not read");
     }
 }

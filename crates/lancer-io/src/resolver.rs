@@ -1,6 +1,7 @@
 //! Which files a scene may open: those in its own directory and below, unless the user allows more; or those that a
 //! program holds in memory.
 
+use crate::account::Account;
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::package::Packed;
@@ -12,6 +13,9 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 /// Turns references written in files into files that may be opened.
+///
+/// One is made for a scene or a model and all that it refers to: what is read through a resolver and its copies is
+/// bounded together.
 #[derive(Clone, Debug)]
 pub struct Resolver {
     store: Store,
@@ -21,6 +25,7 @@ pub struct Resolver {
     packed: Option<Arc<Packed>>,
     /// Hears how far the reading of a model is.
     pub progress: ReadProgress,
+    account: Arc<Account>,
 }
 
 /// Where files are.
@@ -61,12 +66,27 @@ impl Resolver {
     }
 
     fn over(store: Store, limits: Limits) -> Self {
-        Self { store, limits, packed: None, progress: ReadProgress::default() }
+        Self { store, limits, packed: None, progress: ReadProgress::default(), account: Arc::default() }
     }
 
     /// The resolver for what is in a packed file.
     pub(crate) fn within(&self, packed: Packed) -> Self {
-        Self { packed: Some(Arc::new(packed)), ..self.clone() }
+        let limits = self.limits.of_packed(packed.length());
+        Self { packed: Some(Arc::new(packed)), limits, ..self.clone() }
+    }
+
+    /// What has been read so far.
+    pub(crate) fn account(&self) -> &Account {
+        &self.account
+    }
+
+    /// A path that is the same for all names of a file that [`resolve`](Self::resolve) found.
+    pub(crate) fn identity(&self, path: &Path) -> PathBuf {
+        match self.store {
+            Store::Disk { .. } => path.canonicalize().unwrap_or_else(|_| path.to_owned()),
+            // Names in memory and in archives are made plain when they are resolved.
+            Store::Memory(_) => path.to_owned(),
+        }
     }
 
     /// The file that `reference`, written in the file `from`, names: relative to the directory of `from`.
@@ -118,6 +138,12 @@ impl Resolver {
         if let Some(read) = self.packed.as_ref().and_then(|packed| packed.read(path, &self.limits)) {
             return read.map_err(|message| LoadError::new(path, message));
         }
+        let bytes = self.read_unpacked(path)?;
+        self.account.read(self.identity(path), bytes.len() as u64);
+        Ok(bytes)
+    }
+
+    fn read_unpacked(&self, path: &Path) -> Result<Vec<u8>, LoadError> {
         let limit = self.limits.file_bytes;
         let too_long = || -> LoadError {
             let error = Diagnostic::new(path, format!("is longer than {limit} bytes"));

@@ -246,14 +246,21 @@ fn frame(center: DVec3, points: &[DVec3], diagonal: f64, settings: &Settings) ->
     };
     let (distance_across, x) = fit(right, horizontal);
     let (distance_up, y) = fit(up, vertical);
-    // A model without size would have the eye in it.
-    let distance = distance_across.max(distance_up).max(0.5 * diagonal);
     let target = center + right * x + up * y;
+    // A model without size would have the eye in it, and so would one that is nothing beside its distance from the
+    // origin: eye and target would be rounded to one point.
+    let least = (0.5 * diagonal).max(LEAST_DISTANCE * target.abs().max_element());
+    let distance = distance_across.max(distance_up).max(least);
     Camera { eye: target + backward * distance, target, ..toward }
 }
 
+/// How far the eye is from what it looks at, at least, for each unit that it is from the origin: far enough for a
+/// direction that is exact to 1e-4, and so near that only models that are no more than rounding are seen from afar.
+const LEAST_DISTANCE: f64 = 1e-12;
+
 fn lights(center: DVec3, diagonal: f64, camera: &Camera) -> Vec<Light> {
-    let [right, up, backward] = camera.frame().expect("the camera was made to be valid");
+    // A model beyond all numbers has no camera; it is refused as soon as it is to be drawn.
+    let [right, up, backward] = camera.frame().unwrap_or(DVec3::AXES);
     let distance = LIGHT_DISTANCE * diagonal;
     let light = |lamp: &Lamp| {
         let direction = (right * lamp.from.x + up * lamp.from.y + backward * lamp.from.z).normalize();

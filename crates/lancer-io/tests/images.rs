@@ -6,7 +6,7 @@ use lancer_core::film::{Image, Tone, to_srgb8};
 use lancer_core::geometry::DVec2;
 use lancer_core::scene::Wrap;
 use lancer_io::image::encode::{write, write_png};
-use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, load_texture};
+use lancer_io::image::{Encoding, EncodingChoice, ImageFormat, Metadata, decode_picture, load_texture};
 use lancer_io::limits::Limits;
 use lancer_io::output::write_atomically;
 use lancer_io::resolver::Resolver;
@@ -162,6 +162,64 @@ fn bombs_are_refused_by_their_headers() {
     let tga = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 32, 0];
     assert!(load(directory.path(), "bomb.tga", &tga).unwrap_err().contains("65535 x 65535"));
     assert!(begun.elapsed() < Duration::from_secs(1));
+}
+
+/// A JPEG of a kind that its decoder does not stand: it panics where colours have more samples than light, and the first
+/// scan holds one channel.
+fn jpeg_that_panics() -> Vec<u8> {
+    let table = |kind: u8| [&[0xff, 0xc4, 0, 20, kind, 1], &[0; 16][..]].concat();
+    let frame = [0xff, 0xc0, 0, 17, 8, 0, 8, 0, 33, 3, 1, 0x11, 0, 2, 0x21, 0, 3, 0x11, 0];
+    let scan = [0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0];
+    let quantization = [&[0xff, 0xdb, 0, 67, 0], &[1; 64][..]].concat();
+    [&[0xff, 0xd8][..], &quantization, &frame, &table(0), &table(16), &scan, &[0; 64], &[0xff, 0xd9]].concat()
+}
+
+#[test]
+fn what_a_decoder_does_not_stand_is_a_broken_image() {
+    let directory = TempDir::new().unwrap();
+    let error = load(directory.path(), "t.jpg", &jpeg_that_panics()).unwrap_err();
+    assert!(error.ends_with("t.jpg: is a broken image: its decoder cannot go on with it"), "{error}");
+    let picture = decode_picture("t.jpg".as_ref(), &jpeg_that_panics(), 1 << 20).unwrap_err().to_string();
+    assert_eq!(picture, "t.jpg: is a broken image: its decoder cannot go on with it");
+}
+
+#[test]
+fn a_tiff_whose_fields_are_longer_than_it_is_refused() {
+    let directory = TempDir::new().unwrap();
+    let mut tiff = b"II\x2a\0\x08\0\0\0\x01\0\0\x01\x01\0".to_vec();
+    tiff.extend(8_000_000_u32.to_le_bytes());
+    tiff.extend([8, 0, 0, 0, 0, 0, 0, 0]);
+    let error = load(directory.path(), "t.tif", &tiff).unwrap_err();
+    assert!(
+        error.ends_with("t.tif: is a broken image: a field of its directory is longer than the file"),
+        "{error}"
+    );
+}
+
+#[test]
+fn textures_of_a_scene_are_bounded_together() {
+    let directory = TempDir::new().unwrap();
+    let mut flat = Vec::new();
+    let mut encoder = png::Encoder::new(&mut flat, 1000, 1000);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().unwrap().write_image_data(&[0; 3_000_000]).unwrap();
+    for name in ["a.png", "b.png"] {
+        fs::write(directory.path().join(name), &flat).unwrap();
+    }
+    let loaded = |texture_pixels: u64| {
+        let limits = Limits { texture_pixels, ..Limits::default() };
+        let resolver = Resolver::for_file(&directory.path().join("scene.yaml"), false, limits);
+        ["a.png", "b.png"].map(|name| {
+            load_texture(&directory.path().join(name), &resolver).map_err(|error| error.to_string())
+        })
+    };
+    assert!(loaded(2_000_000).iter().all(Result::is_ok));
+    let [first, second] = loaded(1_999_999);
+    assert!(first.is_ok());
+    let error = second.unwrap_err();
+    let told = "b.png: 1000 x 1000 pixels: with the other textures 6000000 bytes are needed, more than 5999997, the most for files of ";
+    assert!(error.contains(told), "{error}");
+    assert!(error.ends_with("hint: --limit texture-pixels=N allows more"), "{error}");
 }
 
 proptest! {

@@ -37,6 +37,21 @@ fn the_showcase_frames_models_of_any_size_anywhere() {
     }
 }
 
+#[test]
+fn a_model_that_is_nothing_beside_its_distance_from_the_origin_has_a_camera() {
+    for size in ["1e-17", "1e-30", "1e-320"] {
+        let model = obj(&format!("v 1 0 0\nv 1 {size} 0\nv 1 0 {size}\nf 1 2 3\n"));
+        let scene = scene_of_model(model);
+        assert!(scene.camera.frame().is_ok(), "{size}");
+        assert!(scene.lights.iter().all(|light| light.position.is_finite()), "{size}");
+        let turning = turning_camera(
+            Bounds { min: DVec3::ONE, max: DVec3::new(1.0, 1.0, 1.0 + 3e-16) },
+            &scene.settings,
+        );
+        assert!(turning.frame().is_ok());
+    }
+}
+
 /// How far up and across points reach from the picture's middle; 1 is its edge.
 fn extent_in_picture(scene: &Scene, points: [DVec3; 8]) -> (f64, f64) {
     let [right, up, backward] = scene.camera.frame().unwrap();

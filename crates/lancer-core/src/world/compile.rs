@@ -48,6 +48,15 @@ impl World {
     /// The most objects that a world may hold.
     pub const MAX_OBJECTS: u64 = 1 << 25;
 
+    /// How many objects a scene draws: its shapes, each as often as it is placed. Nothing is compiled.
+    ///
+    /// # Errors
+    /// A node contains itself, or names what is not there.
+    pub fn count_objects(scene: &Scene) -> Result<u64, CompileError> {
+        let drawn = count_drawn(scene)?;
+        Ok(scene.roots().iter().fold(0, |sum, id| drawn[id.index()].saturating_add(sum)))
+    }
+
     /// Compiles a scene. Trees are built on the threads of the current rayon pool.
     ///
     /// Objects without a material, on themselves or above them, get the default one.

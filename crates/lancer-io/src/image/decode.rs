@@ -4,8 +4,8 @@
 //! and palettes become RGB, and alpha is dropped: a texture is a colour. Pixels are counted from the header,
 //! before any is decoded.
 
+use super::guard;
 use crate::diagnostics::{Diagnostic, LoadError};
-use crate::limits::Limits;
 use crate::resolver::Resolver;
 use ::image::{
     ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits as DecoderLimits,
@@ -28,29 +28,42 @@ const DECODER_OVERHEAD: u64 = 16 << 20;
 ///
 /// # Errors
 /// The file cannot be read, is of another format, is broken, or has more pixels than
-/// [`Limits::texture_pixels`](crate::limits::Limits::texture_pixels).
+/// [`Limits::texture_pixels`](crate::limits::Limits::texture_pixels) allows, alone or with the textures before it.
 pub fn load_texture(path: &Path, resolver: &Resolver) -> Result<Arc<ImageTexture>, LoadError> {
-    texture_of_bytes(path, &resolver.read(path)?, &resolver.limits)
+    texture_of_bytes(path, &resolver.read(path)?, resolver)
 }
 
 /// As [`load_texture`], from bytes that are part of another file; `path` is what messages call them.
 pub(crate) fn texture_of_bytes(
     path: &Path,
     bytes: &[u8],
-    limits: &Limits,
+    resolver: &Resolver,
 ) -> Result<Arc<ImageTexture>, LoadError> {
-    let image = decode(path, bytes, limits.texture_pixels)?;
-    let rgb = image.into_rgb8();
-    let (width, height) = rgb.dimensions();
-    let texels = rgb.pixels().map(|pixel| pixel.0).collect();
+    let format = format_of(path, bytes)?;
+    let broken = |message: String| LoadError::new(path, message);
+    let decoded = guard::decoded(|| Ok(decode(path, format, bytes, resolver)));
+    let Decoded { width, height, texels } = decoded.map_err(broken)??;
+    resolver.account().hold(size_of_val(&texels[..]) as u64);
     let texture =
         ImageTexture::new(width, height, texels).map_err(|error| LoadError::new(path, error.to_string()))?;
     Ok(Arc::new(texture))
 }
 
-fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, LoadError> {
-    let format = format_of(path, bytes)?;
+/// An image as textures hold it.
+struct Decoded {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 3]>,
+}
+
+fn decode(path: &Path, format: ImageFormat, bytes: &[u8], resolver: &Resolver) -> Result<Decoded, LoadError> {
+    /// What the user can do about a texture that is too large.
+    const HINT: &str = "--limit texture-pixels=N allows more";
+    let most_pixels = resolver.limits.texture_pixels;
     let broken = |error: ImageError| LoadError::new(path, message_of(&error));
+    if format == ImageFormat::Tiff {
+        guard::check_tiff(bytes).map_err(|message| LoadError::new(path, message))?;
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(decoder_limits(format, bytes, most_pixels));
 
@@ -58,14 +71,37 @@ fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, L
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > most_pixels {
         let message = format!("{width} x {height} pixels are more than {most_pixels}, the most of a texture");
-        return Err(LoadError::new(path, message));
+        return Err(Diagnostic::new(path, message).with_hint(HINT).into());
     }
     if matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F) {
         return Err(Diagnostic::new(path, "holds floats, which are no colours of a surface")
             .with_hint("save it with 8 or 16 bits a channel")
             .into());
     }
-    DynamicImage::from_decoder(decoder).map_err(broken)
+    let needed = decoder.total_bytes().saturating_mul(guard::times_held(format, bytes));
+    if let Some(excess) = resolver.account().excess(needed, most_pixels) {
+        let message = format!("{width} x {height} pixels: {excess}");
+        return Err(Diagnostic::new(path, message).with_hint(HINT).into());
+    }
+    let texels = texels_of(decoder).map_err(broken)?;
+    Ok(Decoded { width, height, texels })
+}
+
+/// The pixels, of which large images should not be there twice.
+fn texels_of(decoder: impl ImageDecoder) -> Result<Vec<[u8; 3]>, ImageError> {
+    if decoder.color_type() == ColorType::Rgb8 {
+        let (width, height) = decoder.dimensions();
+        let mut texels = vec![[0; 3]; width as usize * height as usize];
+        decoder.read_image(texels.as_flattened_mut())?;
+        return Ok(texels);
+    }
+    Ok(match DynamicImage::from_decoder(decoder)? {
+        DynamicImage::ImageRgba8(image) => {
+            image.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+        }
+        DynamicImage::ImageLuma8(image) => image.pixels().map(|pixel| [pixel[0]; 3]).collect(),
+        other => other.into_rgb8().pixels().map(|pixel| pixel.0).collect(),
+    })
 }
 
 /// What a decoder may hold for an image.

@@ -8,6 +8,7 @@ mod decode;
 pub mod encode;
 mod exif;
 mod format;
+mod guard;
 pub mod layers;
 mod metadata;
 mod read;

@@ -44,7 +44,7 @@ fn load_gzip(
         let message = "does not say which format it holds";
         return Err(Diagnostic::new(path, message).with_hint(format!("name it {}", names.join(", "))).into());
     };
-    let within = resolver.within(Packed::File { path: content.clone(), bytes });
+    let within = resolver.within(Packed::File { path: content.clone(), bytes: bytes.into() });
     // Places are told of the file that there is.
     let renamed = |diagnostic: Diagnostic| {
         let file = if diagnostic.file == content { path.to_owned() } else { diagnostic.file };

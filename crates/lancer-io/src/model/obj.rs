@@ -173,12 +173,19 @@ impl<'a> Parser<'a> {
             self.statement(keyword);
             self.cursor.skip_line();
             self.pace.at(self.cursor.offset());
-            if let Some(excess) = self.polygons.excess(&self.limits) {
+            if let Some(excess) = self.polygons.excess(&self.limits, self.bytes_beside()) {
                 let error = self.source.diagnostic(keyword.offset, format!("from here on {excess}"));
                 self.report.error(|| error.with_hint(excess.hint()));
                 return;
             }
         }
+    }
+
+    /// About what is held beside the polygons.
+    fn bytes_beside(&self) -> usize {
+        const FOR_A_NAME: usize = 160;
+        (self.groups.len() - 1 + self.libraries.len()) * FOR_A_NAME
+            + self.forward.len() * size_of::<ForwardIndex>()
     }
 
     fn statement(&mut self, keyword: Word<'a>) {

@@ -7,9 +7,9 @@
 //!
 //! Source: Geomview manual, "OFF files".
 
-use super::polygons::{Corner, NONE, Polygons};
-use super::report::Report;
-use super::text::{Cursor, Source, Word, decode};
+use super::polygons::{Corner, Excess, NONE, Polygons};
+use super::report::{PassedOver, Report};
+use super::text::{Cursor, Source, Word, not_a_number, quoted};
 use super::{Model, ModelOptions, ModelPart, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
@@ -67,9 +67,12 @@ struct Parser<'a> {
     has_colors: bool,
     /// The positions of corners whose colour is that of their face, by vertex and by the colour's bits.
     position_of: HashMap<(u32, [u64; 3]), u32>,
-    /// Faces of fewer than three corners: the first, and how many.
-    small: Option<(Word<'a>, usize)>,
+    passed_over: PassedOver<'a, SmallFace>,
 }
+
+/// A face of fewer than three corners, the one kind of thing that is passed over.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct SmallFace;
 
 impl<'a> Parser<'a> {
     fn new(source: Source<'a>, limits: Limits) -> Self {
@@ -84,7 +87,7 @@ impl<'a> Parser<'a> {
             colors: Vec::new(),
             has_colors: false,
             position_of: HashMap::new(),
-            small: None,
+            passed_over: PassedOver::new(),
         }
     }
 
@@ -102,12 +105,12 @@ impl<'a> Parser<'a> {
                 b"" => {}
                 b"4" | b"n" | b"4n" => {
                     let message =
-                        format!("`{}` has vertices of other than three dimensions", decode(word.bytes));
+                        format!("`{}` has vertices of other than three dimensions", quoted(word.bytes));
                     return Err(self.fault(word, message));
                 }
                 _ => {
                     return Err(
-                        self.fault(word, format!("`{}` is no keyword of OFF files", decode(word.bytes)))
+                        self.fault(word, format!("`{}` is no keyword of OFF files", quoted(word.bytes)))
                     );
                 }
             }
@@ -130,7 +133,7 @@ impl<'a> Parser<'a> {
     fn count(&self, word: Word, place: Word) -> Result<usize, LoadError> {
         let digits = std::str::from_utf8(word.bytes).ok();
         let Some(count) = digits.and_then(|digits| digits.parse::<u64>().ok()) else {
-            let message = format!("`{}` is not a number of elements", decode(word.bytes));
+            let message = format!("`{}` is not a number of elements", quoted(word.bytes));
             return Err(self.fault(word, message));
         };
         let left = self.source.bytes.len() - place.offset;
@@ -142,6 +145,10 @@ impl<'a> Parser<'a> {
     }
 
     fn vertices(&mut self, header: &Header<'a>) -> Result<(), LoadError> {
+        let bytes = header.vertices * (size_of::<DVec3>() + size_of::<[f64; 3]>());
+        if bytes as u64 > self.limits.memory {
+            return Err(self.too_much(header.counts, Excess::Memory(self.limits.memory)));
+        }
         self.polygons.positions.reserve_exact(header.vertices);
         for done in 0..header.vertices {
             let Some(first) = self.cursor.first_word() else {
@@ -200,9 +207,8 @@ impl<'a> Parser<'a> {
         let Some(word) = self.cursor.word() else {
             return Err(self.fault(element, "the line ends before all numbers of this vertex"));
         };
-        word.number()
-            .filter(|x| x.abs() <= f64::from(f32::MAX))
-            .ok_or_else(|| self.fault(word, format!("`{}` is not a finite number", decode(word.bytes))))
+        let number = word.number().filter(|x| x.abs() <= f64::from(f32::MAX));
+        number.ok_or_else(|| not_a_number(self.source, word).into())
     }
 
     fn faces(&mut self, header: &Header<'a>) -> Result<(), LoadError> {
@@ -213,8 +219,9 @@ impl<'a> Parser<'a> {
             };
             self.face(header, count);
             self.cursor.skip_line();
-            if let Some(excess) = self.polygons.excess(&self.limits) {
-                return Err(self.fault(count, format!("from here on {excess}")));
+            const FOR_A_COLOR: usize = size_of::<[f64; 3]>() + 72;
+            if let Some(excess) = self.polygons.excess(&self.limits, self.colors.len() * FOR_A_COLOR) {
+                return Err(self.too_much(count, excess));
             }
         }
         Ok(())
@@ -223,7 +230,7 @@ impl<'a> Parser<'a> {
     fn face(&mut self, header: &Header, count: Word<'a>) {
         let first = self.polygons.corners.len();
         let Some(corners) = whole(count) else {
-            let message = format!("`{}` is not a number of corners", decode(count.bytes));
+            let message = format!("`{}` is not a number of corners", quoted(count.bytes));
             return self.error(count, message);
         };
         for _ in 0..corners {
@@ -234,7 +241,7 @@ impl<'a> Parser<'a> {
             let index = whole(word).filter(|&index| index < header.vertices as u64);
             let Some(index) = index else {
                 self.polygons.corners.truncate(first);
-                let (written, vertices) = (decode(word.bytes), header.vertices);
+                let (written, vertices) = (quoted(word.bytes), header.vertices);
                 return self.error(
                     word,
                     format!("`{written}` is no vertex of the {vertices} that there are, from 0"),
@@ -259,7 +266,7 @@ impl<'a> Parser<'a> {
             }
         }
         if !self.polygons.end_face(first, 0) {
-            self.small = Some(self.small.map_or((count, 1), |(first, count)| (first, count + 1)));
+            self.passed_over.add(SmallFace, count);
         }
     }
 
@@ -278,11 +285,11 @@ impl<'a> Parser<'a> {
     }
 
     fn finish(mut self) -> Result<(Polygons, Vec<Diagnostic>), LoadError> {
-        if let Some((word, count)) = self.small {
-            let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
-            let message = format!("a face of fewer than 3 corners is not drawn{more}");
-            self.report.warn(self.source.diagnostic(word.offset, message));
-        }
+        let message = |SmallFace, _: &str| "a face of fewer than 3 corners is not drawn".to_owned();
+        self.passed_over
+            .warnings(self.source, message)
+            .into_iter()
+            .for_each(|warning| self.report.warn(warning));
         if self.report.is_clean() && self.polygons.triangles() == 0 {
             self.report.error(|| Diagnostic::new(self.source.path, "holds no face to draw"));
         }
@@ -296,6 +303,11 @@ impl<'a> Parser<'a> {
         }
         let warnings = self.report.finish(self.source.path)?;
         Ok((self.polygons, warnings))
+    }
+
+    fn too_much(&self, place: Word, excess: Excess) -> LoadError {
+        let error = self.source.diagnostic(place.offset, format!("from here on {excess}"));
+        error.with_hint(excess.hint()).into()
     }
 
     fn fault(&self, place: Word, message: impl Into<String>) -> LoadError {

@@ -127,7 +127,9 @@ impl Excess {
     pub(super) fn hint(self) -> &'static str {
         match self {
             Self::Triangles(_) => "--limit triangles=N allows more",
-            Self::Memory(_) => "--limit memory=N allows more",
+            Self::Memory(_) => {
+                "--limit memory=N allows more; a packed file is granted less, so unpack it first"
+            }
             Self::Indices => "cut the model into several files",
         }
     }
@@ -164,7 +166,7 @@ impl Polygons {
     }
 
     /// Whether 32-bit indices still name every corner and attribute.
-    pub(super) fn is_indexable(&self) -> bool {
+    fn is_indexable(&self) -> bool {
         [self.positions.len(), self.uvs.len(), self.normals.len(), self.corners.len()]
             .iter()
             .all(|&length| length < NONE as usize)
@@ -182,12 +184,12 @@ impl Polygons {
         of_255
     }
 
-    /// What there is too much of, if anything.
-    pub(super) fn excess(&self, limits: &Limits) -> Option<Excess> {
+    /// What there is too much of, if anything, where a loader holds so many bytes beside the polygons.
+    pub(super) fn excess(&self, limits: &Limits, beside: usize) -> Option<Excess> {
         if self.triangles > limits.triangles {
             return Some(Excess::Triangles(limits.triangles));
         }
-        if self.peak_bytes() > limits.memory {
+        if self.peak_bytes().saturating_add(beside as u64) > limits.memory {
             return Some(Excess::Memory(limits.memory));
         }
         (!self.is_indexable()).then_some(Excess::Indices)

@@ -7,9 +7,9 @@
 //!
 //! Source: 3D Systems, "Stereolithography interface specification", 1988.
 
-use super::polygons::{Corner, NONE, Polygons};
-use super::report::Report;
-use super::text::{Cursor, Source, Word, decode};
+use super::polygons::{Corner, Excess, NONE, Polygons};
+use super::report::{PassedOver, Report};
+use super::text::{Cursor, Source, Word, decode, kept_name, not_a_number, quoted};
 use super::{Model, ModelOptions, ModelPart, UpAxis, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
@@ -112,9 +112,9 @@ fn text_start(bytes: &[u8]) -> usize {
 }
 
 fn read_binary(source: Source, triangles: usize, limits: &Limits) -> Result<Solids, LoadError> {
+    let too_much = |excess: Excess| Diagnostic::new(source.path, excess.to_string()).with_hint(excess.hint());
     if triangles > limits.triangles {
-        let message = format!("holds {triangles} triangles, more than {}", limits.triangles);
-        return Err(LoadError::new(source.path, message));
+        return Err(too_much(Excess::Triangles(limits.triangles)).into());
     }
     let mut vertices = Vertices::default();
     let records = source.bytes[HEADER..].chunks_exact(RECORD).take(triangles);
@@ -134,6 +134,9 @@ fn read_binary(source: Source, triangles: usize, limits: &Limits) -> Result<Soli
             vertices.add(position);
         }
         vertices.polygons.end_face(first, 0);
+        if let Some(excess) = vertices.excess(limits) {
+            return Err(too_much(excess).into());
+        }
     }
     let end = HEADER + RECORD * triangles;
     let beyond = source.bytes.len() - end;
@@ -154,6 +157,12 @@ struct Vertices {
 }
 
 impl Vertices {
+    /// What there is too much of.
+    fn excess(&self, limits: &Limits) -> Option<Excess> {
+        const FOR_AN_INDEX: usize = 56;
+        self.polygons.excess(limits, self.index_of.len() * FOR_AN_INDEX)
+    }
+
     /// Adds a corner at a position.
     fn add(&mut self, position: DVec3) {
         let positions = &mut self.polygons.positions;
@@ -177,9 +186,12 @@ struct TextParser<'a> {
     names: Vec<String>,
     /// Where the facet being read began among the corners.
     first_corner: usize,
-    /// Facets of fewer than three vertices: the first, and how many.
-    small: Option<(Word<'a>, usize)>,
+    passed_over: PassedOver<'a, SmallFacet>,
 }
+
+/// A facet of fewer than three vertices, the one kind of thing that is passed over.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct SmallFacet;
 
 impl<'a> TextParser<'a> {
     fn new(source: Source<'a>, limits: Limits) -> Self {
@@ -191,7 +203,7 @@ impl<'a> TextParser<'a> {
             vertices: Vertices::default(),
             names: Vec::new(),
             first_corner: 0,
-            small: None,
+            passed_over: PassedOver::new(),
         }
     }
 
@@ -202,7 +214,7 @@ impl<'a> TextParser<'a> {
             match word.bytes.to_ascii_lowercase().as_slice() {
                 b"solid" => {
                     let name = self.cursor.rest_of_line();
-                    self.names.push(decode(name.bytes).into_owned());
+                    self.names.push(kept_name(&decode(name.bytes)));
                     in_solid = Some(word);
                 }
                 b"endsolid" => {
@@ -221,13 +233,14 @@ impl<'a> TextParser<'a> {
                 b"outer" | b"loop" | b"endloop" => {}
                 b"end" => self.end_two_words(&mut in_facet, &mut in_solid),
                 _ => {
-                    let message = format!("`{}` is not expected here", decode(word.bytes));
+                    let message = format!("`{}` is not expected here", quoted(word.bytes));
                     self.error(word, message);
                     self.cursor.skip_line();
                 }
             }
-            if let Some(excess) = self.vertices.polygons.excess(&self.limits) {
-                self.error(word, format!("from here on {excess}"));
+            if let Some(excess) = self.vertices.excess(&self.limits) {
+                let error = self.source.diagnostic(word.offset, format!("from here on {excess}"));
+                self.report.error(|| error.with_hint(excess.hint()));
                 break;
             }
         }
@@ -235,11 +248,9 @@ impl<'a> TextParser<'a> {
             let message = format!("the file ends before this `{}` does", decode(open.bytes));
             self.error(open, message);
         }
-        if let Some((word, count)) = self.small {
-            let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
-            let message = format!("a facet of fewer than 3 vertices is not drawn{more}");
-            self.report.warn(self.source.diagnostic(word.offset, message));
-        }
+        let message = |SmallFacet, _: &str| "a facet of fewer than 3 vertices is not drawn".to_owned();
+        let told = self.passed_over.warnings(self.source, message);
+        told.into_iter().for_each(|warning| self.report.warn(warning));
         let warnings = self.report.finish(self.source.path)?;
         Ok(Solids { polygons: self.vertices.polygons, names: self.names, warnings })
     }
@@ -264,7 +275,7 @@ impl<'a> TextParser<'a> {
                 return;
             };
             let Some(number) = word.number().filter(|x| x.abs() <= f64::from(f32::MAX)) else {
-                self.error(word, format!("`{}` is not a finite number", decode(word.bytes)));
+                self.report.error(|| not_a_number(self.source, word));
                 self.cursor.skip_line();
                 return;
             };
@@ -276,7 +287,7 @@ impl<'a> TextParser<'a> {
     fn end_facet(&mut self, word: Word<'a>) {
         let group = self.names.len() as u32 - 1;
         if !self.vertices.polygons.end_face(self.first_corner, group) {
-            self.small = Some(self.small.map_or((word, 1), |(first, count)| (first, count + 1)));
+            self.passed_over.add(SmallFacet, word);
         }
         self.first_corner = self.vertices.polygons.corners.len();
     }
@@ -294,7 +305,7 @@ impl<'a> TextParser<'a> {
                 *in_solid = None;
             }
             b"loop" => {}
-            _ => self.error(word, format!("`end {}` is not expected here", decode(word.bytes))),
+            _ => self.error(word, format!("`end {}` is not expected here", quoted(word.bytes))),
         }
     }
 

@@ -11,8 +11,8 @@
 mod xml;
 
 use self::xml::{Element, Namespace, Reader};
-use super::polygons::{Corner, Meshes, NONE, Polygons};
-use super::text::kept_name;
+use super::polygons::{Corner, Excess, Meshes, NONE, Polygons};
+use super::text::{kept_name, quoted};
 use super::tree::{Grown, ModelNode, ModelTree, TreeError};
 use super::{Model, ModelOptions, ModelPart, UpAxis, name_of};
 use crate::diagnostics::{Diagnostic, LoadError};
@@ -36,7 +36,7 @@ pub(super) fn load(path: &Path, resolver: &Resolver, options: &ModelOptions) -> 
     let package = Package::new(path, bytes, resolver.limits);
     let package = package.map_err(|message| LoadError::new(path, message))?;
     let root = root_part(&package)?;
-    let mut loader = Loader::new(&package, resolver.limits, options);
+    let mut loader = Loader::new(&package, options);
     let mut items = Vec::new();
     let mut scale = 1.0;
     let mut waiting = vec![Rc::clone(&root)];
@@ -125,23 +125,24 @@ struct Loader<'a> {
     node_of: HashMap<ObjectKey, usize>,
     /// For each node the components that are to be its children.
     uses: Vec<(usize, Use)>,
-    triangles: usize,
+    /// Bytes that the parts, nodes and materials take.
+    taken: usize,
     warnings: Vec<Diagnostic>,
     told: Vec<(PassedOver, Vec<u8>)>,
 }
 
 impl<'a> Loader<'a> {
-    fn new(package: &'a Package, limits: Limits, options: &'a ModelOptions) -> Self {
+    fn new(package: &'a Package, options: &'a ModelOptions) -> Self {
         Self {
             package,
-            limits,
+            limits: package.limits(),
             options,
             parts: Vec::new(),
             materials: Vec::new(),
             nodes: Vec::new(),
             node_of: HashMap::new(),
             uses: Vec::new(),
-            triangles: 0,
+            taken: 0,
             warnings: Vec::new(),
             told: Vec::new(),
         }
@@ -175,6 +176,7 @@ impl<'a> Loader<'a> {
                 }
                 (Namespace::Materials, b"texture2d") => self.pass_over(PassedOver::Element, &element),
                 (Namespace::Materials, _) => {
+                    self.take(&element)?;
                     if let Some(Ok(id)) = element.attribute("id").map(|_| element.number("id")) {
                         properties.insert(id, Properties::Other);
                     }
@@ -182,7 +184,10 @@ impl<'a> Loader<'a> {
                 (Namespace::Core, b"object") => {
                     self.object(name, &element, &mut reader, &properties, &mut part)?;
                 }
-                (Namespace::Core, b"item") => part.items.push(use_of(name, &element, &mut part.named)?),
+                (Namespace::Core, b"item") => {
+                    self.take(&element)?;
+                    part.items.push(use_of(name, &element, &mut part.named)?);
+                }
                 _ => self.pass_over(PassedOver::Element, &element),
             }
         }
@@ -192,10 +197,21 @@ impl<'a> Loader<'a> {
         Ok(part)
     }
 
+    /// Counts something small that the model keeps: a material, an object or a use of one.
+    fn take(&mut self, element: &Element) -> Result<(), LoadError> {
+        const FOR_EACH: usize = 540;
+        self.taken += FOR_EACH;
+        match Polygons::default().excess(&self.limits, self.taken) {
+            Some(excess) => Err(too_much(element, excess)),
+            None => Ok(()),
+        }
+    }
+
     fn base_materials(&mut self, outer: &Element, reader: &mut Reader) -> Result<Properties, LoadError> {
         let mut places = Vec::new();
         while let Some(element) = reader.next_within(outer)? {
             if element.is_start() && element.name() == b"base" {
+                self.take(&element)?;
                 let [r, g, b, alpha] = element.color("displaycolor")?;
                 let name = kept_name(&element.text("name").unwrap_or_default());
                 self.materials.push(plastic(name, Rgb::new(r, g, b), alpha));
@@ -213,6 +229,7 @@ impl<'a> Loader<'a> {
         properties: &HashMap<u32, Properties>,
         part: &mut Part,
     ) -> Result<(), LoadError> {
+        self.take(element)?;
         let id = element.number("id")?;
         let index = self.nodes.len();
         let name = element.text("name").map_or_else(|| format!("object {id}"), |name| kept_name(&name));
@@ -237,6 +254,7 @@ impl<'a> Loader<'a> {
                     }
                 }
                 (Namespace::Core, b"component") => {
+                    self.take(&inner)?;
                     let component = use_of(part_name, &inner, &mut part.named)?;
                     if !is_support {
                         self.uses.push((index, component));
@@ -274,8 +292,8 @@ impl<'a> Loader<'a> {
                 }
                 _ => self.pass_over(PassedOver::Element, &element),
             }
-            if !colored.polygons.is_indexable() {
-                return Err(element.fault("from here on there are more vertices than can be named").into());
+            if let Some(excess) = colored.excess(&self.limits, self.taken) {
+                return Err(too_much(&element, excess));
             }
         }
         Ok(colored)
@@ -288,11 +306,6 @@ impl<'a> Loader<'a> {
         default: Option<Property>,
         colored: &mut ColoredPolygons,
     ) -> Result<(), LoadError> {
-        self.triangles += 1;
-        if self.triangles > self.limits.triangles {
-            let message = format!("from here on there are more than {} triangles", self.limits.triangles);
-            return Err(element.fault(message).into());
-        }
         let vertices = colored.vertices();
         let mut corners = [0; 3];
         for (corner, attribute) in corners.iter_mut().zip(["v1", "v2", "v3"]) {
@@ -352,6 +365,10 @@ impl<'a> Loader<'a> {
         if polygons.triangles() == 0 {
             return Ok(());
         }
+        // What is left of the limits is for the objects that follow.
+        const FOR_A_TRIANGLE: usize = 100;
+        self.taken += polygons.triangles() * FOR_A_TRIANGLE;
+        self.limits.triangles -= polygons.triangles();
         if self.options.crease.is_some() {
             polygons.smooth(self.options.crease);
         }
@@ -386,7 +403,7 @@ impl<'a> Loader<'a> {
             return;
         }
         let message = match kind {
-            PassedOver::Element => format!("`{}` is passed over", String::from_utf8_lossy(&key.1)),
+            PassedOver::Element => format!("`{}` is passed over", quoted(&key.1)),
             PassedOver::Property => "its property is not read or not there; the default is drawn".to_owned(),
             PassedOver::Support => "objects that are supports are not drawn".to_owned(),
         };
@@ -405,12 +422,16 @@ impl<'a> Loader<'a> {
         self.nodes.push(ModelNode { transform, children, ..ModelNode::default() });
         let top = self.nodes.len() - 1;
         let root = self.package.path_of(root);
-        let grown = ModelTree::grow(self.nodes, vec![top]).map_err(|error| {
+        let grown = ModelTree::grow(self.nodes, vec![top], self.limits.objects).map_err(|error| {
             let message = match error {
                 TreeError::Cycle(_) => "an object is a component of itself".to_owned(),
-                TreeError::TooLarge => error.to_string(),
+                TreeError::TooLarge | TreeError::TooMany { .. } => error.to_string(),
             };
-            LoadError::new(&root, message)
+            let diagnostic = Diagnostic::new(&root, message);
+            LoadError::from(match error.hint() {
+                Some(hint) => diagnostic.with_hint(hint),
+                None => diagnostic,
+            })
         })?;
         let Grown { tree: Some(tree), singular } = grown else {
             return Err(LoadError::new(&root, "its build holds nothing to draw"));
@@ -445,7 +466,8 @@ impl<'a> Loader<'a> {
     /// Adds a node for a use of an object.
     fn add_use(&mut self, used: &Use) -> Result<usize, LoadError> {
         let Some(&object) = self.node_of.get(&used.object) else {
-            let message = format!("there is no object {} in `{}`", used.object.1, used.object.0);
+            let (part, id) = &used.object;
+            let message = format!("there is no object {id} in `{}`", quoted(part.as_bytes()));
             return Err(self.fault_at(&used.place, message));
         };
         self.nodes.push(ModelNode {
@@ -467,8 +489,7 @@ fn unit(element: &Element) -> Result<f64, LoadError> {
         Some(b"foot") => 304.8,
         Some(b"meter") => 1000.0,
         Some(other) => {
-            let message =
-                format!("unit is `{}`, which 3MF files do not know", String::from_utf8_lossy(other));
+            let message = format!("unit is `{}`, which 3MF files do not know", quoted(other));
             return Err(element.fault(message).into());
         }
     })
@@ -480,6 +501,7 @@ fn refuse_unknown_extensions(element: &Element) -> Result<(), LoadError> {
     for prefix in required.split_whitespace() {
         if element.namespace_of(prefix.as_bytes()) == Namespace::Other {
             let uri = element.uri_of(prefix.as_bytes()).unwrap_or_else(|| prefix.to_owned());
+            let uri = quoted(uri.as_bytes());
             let message = format!("the file requires the extension `{uri}`, which is not read");
             return Err(element.fault(message).into());
         }
@@ -507,6 +529,11 @@ fn use_of(part: &Rc<str>, element: &Element, named: &mut Vec<Rc<str>>) -> Result
         None => Transform::IDENTITY,
     };
     Ok(Use { object: (part, id), transform, place })
+}
+
+/// The error that there is too much from an element on.
+fn too_much(element: &Element, excess: Excess) -> LoadError {
+    element.fault(format!("from here on {excess}")).with_hint(excess.hint()).into()
 }
 
 fn color_group(outer: &Element, reader: &mut Reader) -> Result<Properties, LoadError> {
@@ -566,6 +593,13 @@ struct ColoredPolygons {
 }
 
 impl ColoredPolygons {
+    /// What there is too much of, where so many bytes are held beside the polygons.
+    fn excess(&self, limits: &Limits, beside: usize) -> Option<Excess> {
+        const FOR_A_COLORED_POSITION: usize = 40;
+        let colors = size_of_val(&self.colors[..]) + self.position_of.len() * FOR_A_COLORED_POSITION;
+        self.polygons.excess(limits, beside + colors)
+    }
+
     /// The number of vertices that the file gives.
     fn vertices(&self) -> usize {
         self.polygons.positions.len() - self.position_of.len()

@@ -39,6 +39,15 @@ pub(super) enum TreeError {
     Cycle(usize),
     #[error("its nodes are drawn more than {} times in all", World::MAX_OBJECTS)]
     TooLarge,
+    #[error("its parts are drawn {count} times in all, more than {most}")]
+    TooMany { count: u64, most: u64 },
+}
+
+impl TreeError {
+    /// What the user can do.
+    pub(super) fn hint(self) -> Option<&'static str> {
+        matches!(self, Self::TooMany { .. }).then_some("--limit objects=N allows more")
+    }
 }
 
 /// Nodes made into a tree.
@@ -54,14 +63,14 @@ pub(super) struct Grown {
 const MOST_VERTICES_BOUNDED: usize = 1 << 26;
 
 impl ModelTree {
-    /// The tree below `roots`, without what draws nothing.
+    /// The tree below `roots`, without what draws nothing; it may draw `most` parts.
     ///
     /// # Errors
     /// See [`TreeError`].
     ///
     /// # Panics
     /// Where a place is out of range.
-    pub(super) fn grow(mut nodes: Vec<ModelNode>, roots: Vec<usize>) -> Result<Grown, TreeError> {
+    pub(super) fn grow(mut nodes: Vec<ModelNode>, roots: Vec<usize>, most: u64) -> Result<Grown, TreeError> {
         let upward = upward_order(&nodes, &roots)?;
         let mut singular = Vec::new();
         let mut visits = vec![0_u64; nodes.len()];
@@ -84,6 +93,10 @@ impl ModelTree {
         }
         let roots = roots.into_iter().filter(draws).collect::<Vec<_>>();
         let tree = (!roots.is_empty()).then(|| Self::of_used(nodes, &roots, &visits, &upward));
+        let count = tree.as_ref().map_or(0, |tree| tree.count(|_| 1));
+        if count > most {
+            return Err(TreeError::TooMany { count, most });
+        }
         Ok(Grown { tree, singular })
     }
 
@@ -233,12 +246,14 @@ pub(super) fn bounds_of_parts<'a>(meshes: impl Iterator<Item = (&'a Mesh, Transf
 mod tests {
     use super::*;
 
+    const MANY: u64 = u64::MAX;
+
     fn node(children: &[usize], parts: &[usize]) -> ModelNode {
         ModelNode { children: children.to_vec(), parts: parts.to_vec(), ..ModelNode::default() }
     }
 
     fn grown(nodes: Vec<ModelNode>, roots: &[usize]) -> ModelTree {
-        ModelTree::grow(nodes, roots.to_vec()).unwrap().tree.unwrap()
+        ModelTree::grow(nodes, roots.to_vec(), MANY).unwrap().tree.unwrap()
     }
 
     #[test]
@@ -258,7 +273,7 @@ mod tests {
     #[test]
     fn cycles_are_told_and_no_depth_overflows() {
         let cycle = vec![node(&[1], &[0]), node(&[2], &[]), node(&[1], &[])];
-        assert_eq!(ModelTree::grow(cycle, vec![0]).err(), Some(TreeError::Cycle(1)));
+        assert_eq!(ModelTree::grow(cycle, vec![0], MANY).err(), Some(TreeError::Cycle(1)));
         let deep = 200_000;
         let mut chain = (1..deep).map(|next| node(&[next], &[])).collect::<Vec<_>>();
         chain.push(node(&[], &[0]));
@@ -273,20 +288,30 @@ mod tests {
     fn nodes_that_double_forty_times_are_refused() {
         let mut nodes = (1..41).map(|next| node(&[next, next], &[])).collect::<Vec<_>>();
         nodes.push(node(&[], &[0]));
-        assert_eq!(ModelTree::grow(nodes, vec![0]).err(), Some(TreeError::TooLarge));
+        assert_eq!(ModelTree::grow(nodes, vec![0], MANY).err(), Some(TreeError::TooLarge));
+    }
+
+    #[test]
+    fn more_parts_than_are_allowed_are_refused() {
+        let nodes = || vec![node(&[1, 1, 1], &[0]), node(&[], &[0, 1])];
+        assert!(ModelTree::grow(nodes(), vec![0], 7).is_ok());
+        assert_eq!(
+            ModelTree::grow(nodes(), vec![0], 6).err(),
+            Some(TreeError::TooMany { count: 7, most: 6 })
+        );
     }
 
     #[test]
     fn nodes_that_double_a_hundred_times_and_draw_something_are_refused() {
         let mut nodes = (1..101).map(|next| node(&[next, next], &[0])).collect::<Vec<_>>();
         nodes.push(node(&[], &[0]));
-        assert_eq!(ModelTree::grow(nodes, vec![0]).err(), Some(TreeError::TooLarge));
+        assert_eq!(ModelTree::grow(nodes, vec![0], MANY).err(), Some(TreeError::TooLarge));
     }
 
     #[test]
     fn flattened_nodes_are_left_out_and_told() {
         let flat = ModelNode { transform: Transform::scale(DVec3::new(1.0, 0.0, 1.0)), ..node(&[], &[0]) };
-        let grown = ModelTree::grow(vec![node(&[1], &[0]), flat], vec![0]).unwrap();
+        let grown = ModelTree::grow(vec![node(&[1], &[0]), flat], vec![0], MANY).unwrap();
         assert_eq!(grown.singular, [1]);
         assert_eq!(grown.tree.unwrap().count(|_| 1), 1);
     }

@@ -114,10 +114,28 @@ fn bombs_are_refused() {
     let bomb = encoder.finish().unwrap();
     assert!(bomb.len() < 200_000);
     let error = error_of(load("a.obj.gz", &bomb));
-    assert!(error.starts_with("a.obj.gz: unpacks to more than 67108864 bytes, from "), "{error}");
+    assert!(error.starts_with("a.obj.gz: unpacks to more than 16777216 bytes, from "), "{error}");
     let limits = Limits { file_bytes: 100, ..Limits::default() };
     let files = Files::new().with("a.obj.gz", gzip(OBJ.repeat(100)));
     assert!(error_of(files.load_within("a.obj.gz", limits)).contains("a.obj.gz: "));
+}
+
+#[test]
+fn a_small_packed_file_has_no_right_to_a_large_model() {
+    // Each unpacks to less than 16 MiB, and would be millions of triangles or nodes.
+    let strip = [0, 1, 2].repeat(4 << 20);
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                  property float z\nelement tristrips 1\nproperty list uint uchar vertex_indices\nend_header\n";
+    let vertices = [[0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let vertices = vertices.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<_>>();
+    let count = (strip.len() as u32).to_le_bytes();
+    let ply = [header.as_bytes(), &vertices, &count, &strip].concat();
+    let nodes = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{{}}{}]}}", ",{}".repeat(4 << 20));
+    for (name, bytes) in [("a.ply", ply), ("a.gltf", nodes.into_bytes())] {
+        let error = load(&format!("{name}.gz"), gzip(&bytes)).unwrap_err().to_string();
+        assert!(error.contains("more than 268435456 bytes of memory are needed"), "{error}");
+        assert!(error.contains("unpack it first"), "{error}");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::obj::{SQUARE, obj};
 use lancer_core::Rgb;
 use lancer_core::scene::{Texture, Wrap};
 use std::fs;
+use std::sync::Arc;
 
 /// A 24-bit BMP of one blue pixel.
 fn blue_bmp() -> Vec<u8> {
@@ -46,6 +47,22 @@ fn textures_are_found_beside_the_library() {
         assert_eq!((image.width(), image.height()), (1, 1));
         assert_eq!(model.materials[0].diffuse, Rgb::new(0.0, 0.5, 0.0));
     }
+}
+
+#[test]
+fn a_texture_of_many_names_is_one() {
+    let files = Files::new()
+        .with("m.obj", format!("mtllib m.mtl\n{SQUARE}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"))
+        .with("m.mtl", "newmtl a\nmap_Kd blue.bmp\nnewmtl b\nmap_Kd ../models/blue.bmp\n")
+        .with("blue.bmp", blue_bmp());
+    let model = files.load("m.obj").unwrap();
+    let images = model.materials.iter().map(|material| match &material.color {
+        Texture::Image { image, .. } => Arc::as_ptr(image),
+        other => panic!("{other:?}"),
+    });
+    let images = images.collect::<Vec<_>>();
+    assert_eq!(images.len(), 2);
+    assert_eq!(images[0], images[1]);
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn faults_of_text_files_are_told_with_their_places() {
 fn more_triangles_than_allowed_are_refused() {
     let limits = Limits { triangles: 3, ..Limits::default() };
     let load = |bytes: Vec<u8>| error_of(Files::new().with("a.stl", bytes).load_within("a.stl", limits));
-    assert_eq!(load(binary(b"", &TETRAHEDRON, 4)), "a.stl: holds 4 triangles, more than 3");
+    assert_eq!(load(binary(b"", &TETRAHEDRON, 4)), "a.stl: there are more than 3 triangles");
     assert_eq!(
         load(text(&TETRAHEDRON).into_bytes()),
         "a.stl:29:3: from here on there are more than 3 triangles"

@@ -201,6 +201,47 @@ fn components_that_double_forty_times_are_refused() {
 }
 
 #[test]
+fn small_files_do_not_fill_the_memory() {
+    let limits = Limits { memory: 1 << 20, ..Limits::default() };
+    let within = |resources: &str, build: &str| {
+        let files = Files::new().with("a.3mf", package(&model_part("", resources, build)));
+        files.load_within("a.3mf", limits)
+    };
+    let triangle = object(1, TRIANGLE);
+    assert!(within(&triangle, ITEM).is_ok());
+    let base = format!(
+        "<basematerials id=\"9\">{}</basematerials>",
+        "<base displaycolor=\"#FFFFFF\"/>".repeat(2000)
+    );
+    let objects = (2..2002).map(|id| format!("<object id=\"{id}\"/>")).collect::<String>();
+    let vertices = TRIANGLE.replace(
+        "<triangles>",
+        &("<triangles>".to_owned() + &"<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>".repeat(10_000)),
+    );
+    for (resources, build) in [
+        (base + &triangle, ITEM.to_owned()),
+        (objects + &triangle, ITEM.to_owned()),
+        (triangle, ITEM.repeat(2000)),
+        (object(1, &vertices), ITEM.to_owned()),
+    ] {
+        let error = error_of(within(&resources, &build));
+        assert!(error.ends_with("from here on more than 1048576 bytes of memory are needed"), "{error}");
+    }
+}
+
+#[test]
+fn components_that_draw_more_objects_than_allowed_are_refused() {
+    let pair = |id: u32| {
+        format!("<components><component objectid=\"{id}\"/><component objectid=\"{id}\"/></components>")
+    };
+    let doubling = (2..23).map(|id| object(id, &pair(id - 1))).collect::<String>();
+    let error =
+        three_mf("", &(object(1, TRIANGLE) + &doubling), "<item objectid=\"22\"/>").unwrap_err().to_string();
+    assert!(error.contains("its parts are drawn 2097152 times in all, more than 1048576"), "{error}");
+    assert!(error.contains("--limit objects=N allows more"), "{error}");
+}
+
+#[test]
 fn entities_do_not_grow() {
     let part = model_part("", &object(1, TRIANGLE), ITEM).replace(
         "<model",
@@ -261,7 +302,7 @@ fn long_names_are_cut_off() {
 
 #[test]
 fn many_small_bombs_are_one() {
-    let padding = " ".repeat(40 << 20);
+    let padding = " ".repeat(10 << 20);
     let component =
         "<object id=\"1\"><components><component p:path=\"/b.model\" objectid=\"1\"/></components></object>";
     let root = model_part("", component, ITEM) + &padding;
@@ -271,7 +312,7 @@ fn many_small_bombs_are_one() {
     let bomb = zip(&[("3D/3dmodel.model", root.as_bytes()), ("b.model", further.as_bytes())]);
     let error = error_of(load("a.3mf", bomb));
     assert!(
-        error.contains("b.model: unpacks, with the files before it, to more than 67108864 bytes"),
+        error.contains("b.model: unpacks, with the files before it, to more than 16777216 bytes"),
         "{error}"
     );
 }

@@ -82,6 +82,126 @@ fn hostile_models_are_faults_in_little_memory() {
     }
 }
 
+/// A glTF file of one triangle, with some text in it replaced.
+fn gltf_with(old: &str, new: &str) -> Vec<u8> {
+    const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+    assert!(TRIANGLE.contains(old), "{old}");
+    TRIANGLE.replace(old, new).into_bytes()
+}
+
+fn stl_of(count: u32, triangle: [f32; 12]) -> Vec<u8> {
+    let triangle = triangle.map(f32::to_le_bytes);
+    [&[0; 80][..], &count.to_le_bytes(), triangle.as_flattened(), &[0; 2]].concat()
+}
+
+#[test]
+fn every_other_format_holds_as_well() {
+    let sandbox = Sandbox::new();
+    sandbox.write("secret.bin", [0; 36]);
+    let inside = sandbox.path("inside");
+    std::fs::create_dir(&inside).unwrap();
+    let off = |body: &str| format!("OFF\n3 1 0\n0 0 0\n1 0 0\n{body}").into_bytes();
+    let nodes = |nodes: &str| gltf_with(r#"[{"mesh":0}]"#, nodes);
+    let uri = |uri: &str| gltf_with("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA", uri);
+    for (name, bytes, expected) in [
+        ("count.stl", stl_of(u32::MAX, [0.0; 12]), "ends after 1 of the 4294967295 triangles"),
+        ("cut.stl", stl_of(1, [0.0; 12])[..100].to_vec(), "ends after 0 of the 1 triangles"),
+        ("nan.stl", stl_of(1, [f32::NAN; 12]), "is not finite"),
+        (
+            "infinite.stl",
+            b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 1e999 0".to_vec(),
+            "infinite.stl:4:10: ",
+        ),
+        ("word.stl", [b"solid\n".to_vec(), vec![b'x'; 20 << 20]].concat(), "xxx...` is not expected here"),
+        ("count.off", b"OFF\n4294967295 1 0\n".to_vec(), "too short for 4294967295 elements"),
+        ("cut.off", off("0 1"), "cut.off:5:1: "),
+        ("nan.off", off("0 nan 0\n3 0 1 2\n"), "nan.off:5:3: "),
+        ("range.off", off("0 1 0\n3 0 1 4000000000\n"), "range.off:6:7: "),
+        ("corners.off", off("0 1 0\n4000000000 0 1 2\n"), "the line ends before all corners"),
+        (
+            "word.off",
+            [b"OFF\n".to_vec(), vec![b'1'; 20 << 20]].concat(),
+            "111...` is not a number of elements",
+        ),
+        (
+            "count.gltf",
+            gltf_with(r#""count":3"#, r#""count":4294967295"#),
+            "/accessors/0: 4294967295 elements",
+        ),
+        (
+            "zeros.gltf",
+            gltf_with(
+                r#""bufferView":0,"componentType":5126,"count":3"#,
+                r#""componentType":5126,"count":4294967295"#,
+            ),
+            "more than",
+        ),
+        (
+            "length.gltf",
+            gltf_with(r#""byteLength":36,"uri""#, r#""byteLength":4611686018427387904,"uri""#),
+            "/buffers/0/byteLength",
+        ),
+        ("range.gltf", nodes(r#"[{"mesh":4000000000}]"#), "/nodes/0/mesh: is 4000000000"),
+        ("cycle.gltf", nodes(r#"[{"mesh":0,"children":[1]},{"children":[0]}]"#), "the node is below itself"),
+        (
+            "parents.gltf",
+            nodes(r#"[{"children":[2]},{"children":[2]},{"mesh":0}]"#),
+            "is a child of node 0 already",
+        ),
+        ("nesting.gltf", [b"{\"extras\":".to_vec(), vec![b'['; 1 << 20]].concat(), "nesting.gltf:1:"),
+        ("up.gltf", uri("../secret.bin"), "`../secret.bin` lies outside"),
+        ("escaped.gltf", uri("%2e%2e/secret.bin"), "`../secret.bin` lies outside"),
+        ("absolute.gltf", uri("/etc/passwd"), "`/etc/passwd` lies outside"),
+        ("file.gltf", uri("file:///etc/passwd"), "`file:` URIs are not opened"),
+        (
+            "cut.glb",
+            b"glTF\x02\0\0\0\xff\xff\xff\xff".to_vec(),
+            "of the 4294967295 bytes that its header promises",
+        ),
+        ("cut.3mf", b"PK\x03\x04\0\0".to_vec(), "is no zip archive"),
+        ("bomb.yaml", bomb(), "values, those of aliases included"),
+        ("objects.yaml", doubled(24), "draws 16777216 objects, more than 1048576"),
+        ("deep.yaml", vec![b'['; 1 << 20], "deep.yaml:1:"),
+        ("texture.yaml", textured("huge.png"), "100000 x 100000 pixels are more than"),
+        ("outside.yaml", textured("../secret.bin"), "`../secret.bin` lies outside"),
+    ] {
+        std::fs::write(inside.join("huge.png"), huge_png()).unwrap();
+        std::fs::write(inside.join(name), bytes).unwrap();
+        let (code, told) = check(&sandbox, &format!("inside/{name}"));
+        assert_eq!(code, Some(3), "{name}: {told}");
+        assert!(told.contains(expected), "{name}: {told}");
+        assert!(told.len() < 100_000, "{name}: {} bytes of messages", told.len());
+    }
+}
+
+/// Forty lists, each of which holds the one before it twice.
+fn bomb() -> Vec<u8> {
+    let lists = (1..40).map(|i| format!("a{i}: &a{i} [*a{0}, *a{0}]\n", i - 1));
+    ("a0: &a0 1\n".to_owned() + &lists.collect::<String>()).into_bytes()
+}
+
+/// A cube that is placed twice as often with every level.
+fn doubled(levels: u32) -> Vec<u8> {
+    let asset = |i: u32| format!("  a{i}: {{children: [{{use: a{0}}}, {{use: a{0}}}]}}\n", i + 1);
+    let assets = (0..levels).map(asset).collect::<String>();
+    format!("format: 1\nassets:\n{assets}  a{levels}: {{shape: cube}}\nobjects: [{{use: a0}}]\n").into_bytes()
+}
+
+fn textured(image: &str) -> Vec<u8> {
+    format!("format: 1\nobjects: [{{shape: cube, material: {{color: {{image: {image}}}}}}}]\n").into_bytes()
+}
+
+/// The header of a PNG of 100,000 x 100,000 pixels, and the beginning of its data.
+fn huge_png() -> Vec<u8> {
+    let size = 100_000_u32.to_be_bytes();
+    let header = [&b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"[..], &size, &size, b"\x08\x02\0\0\0"].concat();
+    [&header[..], b"\x27\x30\x9c\x9f", b"\0\0\0\x08IDAT\x78\xda\0\0\0\0\0\0\0\0\0\0"].concat()
+}
+
 #[test]
 fn a_hostile_library_is_warnings() {
     let sandbox = Sandbox::new();

@@ -9,7 +9,7 @@ mod pfm;
 pub(super) use self::exr::check_sizes as exr_check_sizes;
 
 use super::decode::{decoder_limits, message_of};
-use super::{HDR_PROVENANCE, encode, exif};
+use super::{HDR_PROVENANCE, encode, exif, guard};
 use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
@@ -64,6 +64,11 @@ pub fn read_picture(path: &Path, limits: Limits) -> Result<Picture, LoadError> {
 /// # Errors
 /// They are of another format, are broken, or hold more than `most_pixels`.
 pub fn decode_picture(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<Picture, LoadError> {
+    let broken = |message: String| LoadError::new(path, message);
+    guard::decoded(|| Ok(decode(path, bytes, most_pixels))).map_err(broken)?
+}
+
+fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<Picture, LoadError> {
     if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
         return pfm::read(bytes, most_pixels).map_err(|message| LoadError::new(path, message));
     }
@@ -98,6 +103,9 @@ fn read(format: ImageFormat, bytes: &[u8], most_pixels: u64) -> Result<Picture, 
     if format == ImageFormat::Hdr && !hdr_header(bytes).windows(2).any(|pair| pair == b"\n\n") {
         return Err(format!("is a broken image: its header does not end within {MOST_HEADER} bytes"));
     }
+    if format == ImageFormat::Tiff {
+        guard::check_tiff(bytes)?;
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(decoder_limits(format, bytes, most_pixels));
     let decoder = reader.into_decoder().map_err(broken)?;
@@ -109,6 +117,10 @@ fn read(format: ImageFormat, bytes: &[u8], most_pixels: u64) -> Result<Picture, 
 /// What a file says of how its picture was made: the text of a [`Provenance`](crate::provenance::Provenance). `None`
 /// where it says nothing, or is no picture. No pixel is decoded.
 pub fn provenance_of(bytes: &[u8]) -> Option<String> {
+    guard::decoded(|| Ok(provenance_in(bytes))).ok()?
+}
+
+fn provenance_in(bytes: &[u8]) -> Option<String> {
     if is_exr(bytes) {
         return exr::provenance_of(bytes);
     }

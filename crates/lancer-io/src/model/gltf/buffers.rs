@@ -111,7 +111,8 @@ impl<'a> Buffers<'a> {
             return decode_data(uri).map(Rc::new).map_err(|message| Fault::new(at, message));
         }
         let path = self.file(uri, at)?;
-        if let Some(bytes) = self.files.borrow().get(&path) {
+        let identity = self.resolver.identity(&path);
+        if let Some(bytes) = self.files.borrow().get(&identity) {
             return Ok(Rc::clone(bytes));
         }
         let bytes = self.resolver.read(&path).map_err(|error| Fault::new(at, error.to_string()))?;
@@ -121,7 +122,7 @@ impl<'a> Buffers<'a> {
         };
         self.left.set(left);
         let bytes = Rc::new(bytes);
-        self.files.borrow_mut().insert(path, Rc::clone(&bytes));
+        self.files.borrow_mut().insert(identity, Rc::clone(&bytes));
         Ok(bytes)
     }
 

@@ -3,8 +3,9 @@
 //! Types only. What they say of one another (indices, ranges) is checked where it is followed. Rare members are
 //! boxed: a hostile file may hold a node in three bytes.
 
-use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
+use serde_json::Number;
 use std::collections::BTreeMap;
 
 /// A whole document.
@@ -33,8 +34,23 @@ pub(super) struct Document {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Asset {
+    #[serde(deserialize_with = "text_or_number")]
     pub(super) version: String,
     pub(super) min_version: Option<String>,
+}
+
+/// The version, which older files write as a number.
+fn text_or_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "the version must be text, as \"2.0\"")]
+    enum Version {
+        Text(String),
+        Number(Number),
+    }
+    Ok(match Version::deserialize(deserializer)? {
+        Version::Text(text) => text,
+        Version::Number(number) => number.to_string(),
+    })
 }
 
 #[derive(Debug, Default, Deserialize)]

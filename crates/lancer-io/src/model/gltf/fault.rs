@@ -10,13 +10,19 @@ pub(super) struct Fault {
     /// A JSON pointer, as `/meshes/0/primitives/1/attributes/POSITION`.
     pointer: String,
     message: String,
+    hint: Option<&'static str>,
 }
 
 pub(super) type Result<T> = std::result::Result<T, Fault>;
 
 impl Fault {
     pub(super) fn new(pointer: impl Display, message: impl Into<String>) -> Self {
-        Self { pointer: pointer.to_string(), message: message.into() }
+        Self { pointer: pointer.to_string(), message: message.into(), hint: None }
+    }
+
+    /// The fault with what the user can do.
+    pub(super) fn with_hint(self, hint: impl Into<Option<&'static str>>) -> Self {
+        Self { hint: hint.into(), ..self }
     }
 
     pub(super) fn pointer(&self) -> &str {
@@ -28,7 +34,11 @@ impl Fault {
     }
 
     pub(super) fn into_error(self, path: &Path) -> LoadError {
-        LoadError::new(path, format!("{}: {}", self.pointer, self.message))
+        let error = Diagnostic::new(path, format!("{}: {}", self.pointer, self.message));
+        match self.hint {
+            Some(hint) => error.with_hint(hint).into(),
+            None => error.into(),
+        }
     }
 }
 

@@ -20,6 +20,7 @@ mod nodes;
 mod primitives;
 mod textures;
 mod view;
+mod words;
 
 use self::buffers::Buffers;
 use self::container::Container;
@@ -29,10 +30,12 @@ use self::materials::Converted;
 use self::nodes::Graph;
 use self::primitives::MeshMaker;
 use self::textures::Textures;
-use super::text::kept_name;
-use super::tree::{Grown, ModelNode, ModelTree};
+use super::polygons::Excess;
+use super::text::{kept_name, quoted};
+use super::tree::{Grown, ModelNode, ModelTree, TreeError};
 use super::{Model, ModelOptions, ModelPart, name_of, normals};
 use crate::diagnostics::{Diagnostic, LoadError};
+use crate::limits::Limits;
 use crate::resolver::Resolver;
 use lancer_core::geometry::Transform;
 use lancer_core::mesh::Mesh;
@@ -63,7 +66,7 @@ pub(super) fn load(
 ) -> std::result::Result<Model, LoadError> {
     let bytes = resolver.read(path)?;
     let container = Container::parse(&bytes).map_err(|message| LoadError::new(path, message))?;
-    let document = parse(path, container.json)?;
+    let document = parse(path, container.json, &resolver.limits)?;
     let buffers = Buffers::new(path, resolver, &document, container.binary);
     let mut warnings = Warnings::default();
     let assembled = assemble(path, resolver, options, &document, &buffers, &mut warnings);
@@ -82,29 +85,45 @@ pub(super) fn load(
 }
 
 /// The document, if it is of a version that is read.
-fn parse(path: &Path, json: &[u8]) -> std::result::Result<Document, LoadError> {
+fn parse(path: &Path, json: &[u8], limits: &Limits) -> std::result::Result<Document, LoadError> {
     // Older documents differ in more than this member, so it is looked at first.
     #[derive(Default, serde::Deserialize)]
     #[serde(default)]
     struct Versioned {
         asset: document::Asset,
     }
+    if memory_of(json) > limits.memory {
+        let excess = Excess::Memory(limits.memory);
+        return Err(Diagnostic::new(path, excess.to_string()).with_hint(excess.hint()).into());
+    }
     let broken = |error: serde_json::Error| -> LoadError {
-        let words = error.to_string();
-        let message = words.rsplit_once(" at line ").map_or(words.as_str(), |(message, _)| message);
-        let diagnostic = Diagnostic::new(path, message).at(error.line().max(1), error.column().max(1));
-        diagnostic.showing(&String::from_utf8_lossy(json)).into()
+        let diagnostic = Diagnostic::new(path, words::of_error(&error));
+        let place = diagnostic.at(error.line().max(1), error.column().max(1));
+        place.showing(&String::from_utf8_lossy(json)).into()
     };
     let Versioned { asset } = serde_json::from_slice(json).map_err(broken)?;
     let needed = asset.min_version.as_deref().unwrap_or(&asset.version);
     if !needed.starts_with("2.") {
         let message = match needed {
             "" => "/asset/version: is missing, so this is no glTF file".to_owned(),
-            other => format!("/asset/version: is `{other}`; 2.0 is read"),
+            other => format!("/asset/version: is `{}`; 2.0 is read", quoted(other.as_bytes())),
         };
         return Err(LoadError::new(path, message));
     }
     serde_json::from_slice(json).map_err(broken)
+}
+
+/// About the most bytes that a document and what is made of it take, by the marks between its values: an empty node is
+/// three bytes long.
+fn memory_of(json: &[u8]) -> u64 {
+    const FOR_AN_OBJECT: u64 = 400;
+    const FOR_A_VALUE: u64 = 16;
+    let bytes = |&mark: &u8| match mark {
+        b'{' => FOR_AN_OBJECT,
+        b',' | b'[' => FOR_A_VALUE,
+        _ => 0,
+    };
+    json.iter().map(bytes).sum()
 }
 
 /// The model that a document describes, without its warnings.
@@ -128,7 +147,7 @@ fn assemble(
     let mut parts = Parts {
         document,
         textures: Textures::new(path, document, buffers, resolver),
-        meshes: MeshMaker::new(document, buffers, resolver.limits.triangles),
+        meshes: MeshMaker::new(document, buffers, &resolver.limits),
         options,
         smoothed: HashMap::new(),
         materials: Vec::new(),
@@ -137,8 +156,9 @@ fn assemble(
         places_of_mesh: HashMap::new(),
     };
     let nodes = model_nodes(document, &graph, &mut parts, warnings)?;
-    let grown = ModelTree::grow(nodes, graph.roots.clone());
-    let Grown { tree, singular } = grown.map_err(|error| Fault::new("/nodes", error.to_string()))?;
+    let grown = ModelTree::grow(nodes, graph.roots.clone(), resolver.limits.objects);
+    let too_many = |error: TreeError| Fault::new("/nodes", error.to_string()).with_hint(error.hint());
+    let Grown { tree, singular } = grown.map_err(too_many)?;
     for index in singular {
         warnings.add(format!("/nodes/{index}"), "is not drawn: its transform flattens it");
     }

@@ -9,6 +9,8 @@ use super::buffers::Buffers;
 use super::document::{Document, Primitive};
 use super::fault::{Fault, Result, Warnings};
 use super::materials::UvMapping;
+use crate::limits::Limits;
+use crate::model::polygons::Excess;
 use lancer_core::geometry::DVec3;
 use lancer_core::mesh::{Mesh, MeshData, MeshError};
 use std::collections::HashMap;
@@ -17,7 +19,7 @@ use std::sync::Arc;
 /// How many corners of triangles there may be for each byte of the buffers. In an honest file an index takes a
 /// byte or more, and few primitives share theirs; what draws its bytes more often than this is made to fill the
 /// memory.
-const CORNERS_PER_BYTE: u64 = 16;
+const CORNERS_PER_BYTE: u64 = 4;
 
 /// Corners that any file may have.
 const CORNERS_AT_LEAST: u64 = 1 << 20;
@@ -41,14 +43,22 @@ pub(super) struct MeshMaker<'a> {
     /// Corners that may still be made.
     corners_left: u64,
     triangles_left: u64,
-    most_triangles: usize,
+    bytes_left: u64,
+    limits: Limits,
 }
 
 impl<'a> MeshMaker<'a> {
-    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>, most_triangles: usize) -> Self {
+    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>, limits: &Limits) -> Self {
         let corners_left = buffers.total_bytes().saturating_mul(CORNERS_PER_BYTE).max(CORNERS_AT_LEAST);
-        let triangles_left = most_triangles as u64;
-        Self { document, buffers, made: HashMap::new(), corners_left, triangles_left, most_triangles }
+        Self {
+            document,
+            buffers,
+            made: HashMap::new(),
+            corners_left,
+            triangles_left: limits.triangles as u64,
+            bytes_left: limits.memory,
+            limits: *limits,
+        }
     }
 
     /// The mesh of a primitive whose texture takes its coordinates as `mapping` says; `None`, and a warning, where
@@ -214,14 +224,21 @@ impl<'a> MeshMaker<'a> {
 
     /// Takes what a primitive needs off what there may still be.
     fn charge(&mut self, corners: u64, triangles: u64, at: &str) -> Result<()> {
-        let triangles_left = self.triangles_left.checked_sub(triangles).ok_or_else(|| {
-            Fault::new(at, format!("from here on there are more than {} triangles", self.most_triangles))
-        })?;
+        /// What a triangle takes with its vertices, and a tree over it.
+        const FOR_A_TRIANGLE: u64 = 100;
+        let too_much =
+            |excess: Excess| Fault::new(at, format!("from here on {excess}")).with_hint(excess.hint());
+        let triangles_left = self.triangles_left.checked_sub(triangles);
+        let triangles_left =
+            triangles_left.ok_or_else(|| too_much(Excess::Triangles(self.limits.triangles)))?;
+        let bytes_left = self.bytes_left.checked_sub(triangles.saturating_mul(FOR_A_TRIANGLE));
+        let bytes_left = bytes_left.ok_or_else(|| too_much(Excess::Memory(self.limits.memory)))?;
         let corners_left = self.corners_left.checked_sub(corners).ok_or_else(|| {
             let message = "from here on more triangles are drawn than the file has bytes for";
             Fault::new(at, message)
         })?;
-        (self.triangles_left, self.corners_left) = (triangles_left, corners_left);
+        (self.triangles_left, self.corners_left, self.bytes_left) =
+            (triangles_left, corners_left, bytes_left);
         Ok(())
     }
 }

@@ -8,22 +8,19 @@ use crate::image::{load_texture, texture_of_bytes};
 use crate::resolver::Resolver;
 use lancer_core::scene::ImageTexture;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// How many of the largest allowed textures all textures of a model may hold together.
-const TEXTURE_BUDGET: u64 = 8;
 
 /// The textures of a document.
 pub(super) struct Textures<'a> {
     path: &'a Path,
     document: &'a Document,
     buffers: &'a Buffers<'a>,
-    resolver: Resolver,
+    resolver: &'a Resolver,
     /// By image; `None` for one that could not be had and has been told.
     loaded: HashMap<usize, Option<Arc<ImageTexture>>>,
-    /// The pixels that further textures may have.
-    budget: u64,
+    /// Those of files, which several images may name.
+    files: HashMap<PathBuf, Arc<ImageTexture>>,
 }
 
 impl<'a> Textures<'a> {
@@ -31,10 +28,9 @@ impl<'a> Textures<'a> {
         path: &'a Path,
         document: &'a Document,
         buffers: &'a Buffers<'a>,
-        resolver: &Resolver,
+        resolver: &'a Resolver,
     ) -> Self {
-        let budget = resolver.limits.texture_pixels.saturating_mul(TEXTURE_BUDGET);
-        Self { path, document, buffers, resolver: resolver.clone(), loaded: HashMap::new(), budget }
+        Self { path, document, buffers, resolver, loaded: HashMap::new(), files: HashMap::new() }
     }
 
     /// The image of a texture. One that cannot be had is a warning; an index that leads nowhere is an error.
@@ -54,7 +50,6 @@ impl<'a> Textures<'a> {
         if let Some(image) = self.loaded.get(&source) {
             return Ok(image.clone());
         }
-        self.resolver.limits.texture_pixels = self.resolver.limits.texture_pixels.min(self.budget);
         let image = match self.read(source) {
             Ok(image) => Some(image),
             Err(fault) => {
@@ -62,13 +57,11 @@ impl<'a> Textures<'a> {
                 None
             }
         };
-        let pixels = image.as_ref().map_or(0, |image| u64::from(image.width()) * u64::from(image.height()));
-        self.budget = self.budget.saturating_sub(pixels);
         self.loaded.insert(source, image.clone());
         Ok(image)
     }
 
-    fn read(&self, index: usize) -> Result<Arc<ImageTexture>> {
+    fn read(&mut self, index: usize) -> Result<Arc<ImageTexture>> {
         let here = format!("/images/{index}");
         let image = &self.document.images[index];
         let broken = |error: LoadError| {
@@ -81,15 +74,21 @@ impl<'a> Textures<'a> {
         match (&image.uri, image.buffer_view) {
             (Some(uri), _) if is_data(uri) => {
                 let bytes = self.buffers.fetch(uri, &format!("{here}/uri"))?;
-                texture_of_bytes(&named, &bytes, &self.resolver.limits).map_err(broken)
+                texture_of_bytes(&named, &bytes, self.resolver).map_err(broken)
             }
             (Some(uri), _) => {
                 let file = self.buffers.file(uri, &format!("{here}/uri"))?;
-                load_texture(&file, &self.resolver).map_err(broken)
+                let identity = self.resolver.identity(&file);
+                if let Some(known) = self.files.get(&identity) {
+                    return Ok(Arc::clone(known));
+                }
+                let read = load_texture(&file, self.resolver).map_err(broken)?;
+                self.files.insert(identity, Arc::clone(&read));
+                Ok(read)
             }
             (None, Some(view)) => {
                 let view = self.buffers.view(view, &format!("{here}/bufferView"))?;
-                texture_of_bytes(&named, view.bytes, &self.resolver.limits).map_err(broken)
+                texture_of_bytes(&named, view.bytes, self.resolver).map_err(broken)
             }
             (None, None) => Err(Fault::new(here, "has neither a uri nor a bufferView")),
         }

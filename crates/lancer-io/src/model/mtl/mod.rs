@@ -24,9 +24,6 @@ use std::sync::Arc;
 /// The most libraries that one OBJ file may name: far more than any does, and few enough to open.
 const MAX_LIBRARIES: usize = 100;
 
-/// How many of the largest allowed textures all textures of a model may hold together.
-const TEXTURE_BUDGET: u64 = 8;
-
 /// How many undefined materials a warning names.
 const NAMES_TOLD: usize = 5;
 
@@ -147,18 +144,15 @@ impl Libraries {
 }
 
 /// The textures of one model, each file read once.
-struct Textures {
-    resolver: Resolver,
+struct Textures<'a> {
+    resolver: &'a Resolver,
     /// By path; `None` for one that could not be had and has been told.
     loaded: HashMap<PathBuf, Option<Arc<ImageTexture>>>,
-    /// The pixels that further textures may have.
-    budget: u64,
 }
 
-impl Textures {
-    fn new(resolver: &Resolver) -> Self {
-        let budget = resolver.limits.texture_pixels.saturating_mul(TEXTURE_BUDGET);
-        Self { resolver: resolver.clone(), loaded: HashMap::new(), budget }
+impl<'a> Textures<'a> {
+    fn new(resolver: &'a Resolver) -> Self {
+        Self { resolver, loaded: HashMap::new() }
     }
 
     /// The image that the library at `library` names.
@@ -179,20 +173,18 @@ impl Textures {
                 return None;
             }
         };
-        if let Some(image) = self.loaded.get(&path) {
+        let identity = self.resolver.identity(&path);
+        if let Some(image) = self.loaded.get(&identity) {
             return image.clone();
         }
-        self.resolver.limits.texture_pixels = self.resolver.limits.texture_pixels.min(self.budget);
-        let image = match load_texture(&path, &self.resolver) {
+        let image = match load_texture(&path, self.resolver) {
             Ok(image) => Some(image),
             Err(error) => {
                 warnings.extend(error.diagnostics);
                 None
             }
         };
-        let pixels = image.as_ref().map_or(0, |image| u64::from(image.width()) * u64::from(image.height()));
-        self.budget = self.budget.saturating_sub(pixels);
-        self.loaded.insert(path, image.clone());
+        self.loaded.insert(identity, image.clone());
         image
     }
 

@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
     }
 
     fn check_size(&self) -> Result<(), LoadError> {
-        self.polygons.excess(&self.limits).map_or(Ok(()), |excess| Err(self.too_much(excess)))
+        self.polygons.excess(&self.limits, 0).map_or(Ok(()), |excess| Err(self.too_much(excess)))
     }
 
     fn too_much(&self, excess: Excess) -> LoadError {

@@ -4,7 +4,7 @@
 //! expanded, so that no document grows. Every fault is told by line.
 
 use crate::diagnostics::{Diagnostic, LoadError};
-use crate::model::text::Source;
+use crate::model::text::{Source, quoted};
 use lancer_core::color::srgb_to_linear;
 use lancer_core::geometry::DVec3;
 use quick_xml::XmlVersion;
@@ -90,7 +90,8 @@ impl<'a> Reader<'a> {
                 Ok(_) => continue,
                 Err(error) => {
                     let place = self.reader.error_position() as usize;
-                    let message = format!("is no XML: {}", error.to_string().to_lowercase());
+                    let words = error.to_string().to_lowercase();
+                    let message = format!("is no XML: {}", quoted(words.as_bytes()));
                     return Err(self.source.diagnostic(place.max(offset), message).into());
                 }
             };
@@ -228,13 +229,13 @@ impl Element<'_> {
 
     fn parsed<T>(&self, name: &str, parse: impl Fn(&str) -> Option<T>, what: &str) -> Result<T, LoadError> {
         let Some(value) = self.attribute(name) else {
-            let element = String::from_utf8_lossy(self.full_name()).into_owned();
+            let element = quoted(self.full_name());
             return Err(self.fault(format!("`{element}` lacks `{name}`")).into());
         };
-        std::str::from_utf8(value).ok().and_then(parse).ok_or_else(|| {
-            let shown = String::from_utf8_lossy(value).chars().take(60).collect::<String>();
-            self.fault(format!("{name} is `{shown}`, must be {what}")).into()
-        })
+        std::str::from_utf8(value)
+            .ok()
+            .and_then(parse)
+            .ok_or_else(|| self.fault(format!("{name} is `{}`, must be {what}", quoted(value))).into())
     }
 
     /// What is wrong with this element.

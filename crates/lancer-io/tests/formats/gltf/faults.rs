@@ -169,10 +169,28 @@ fn json_faults_are_told_by_line_and_column() {
     let error =
         load("a.gltf", "{\"asset\": {\"version\": \"2.0\"},\n \"nodes\": [{\"mesh\": \"x\"}]}").unwrap_err();
     assert!(error.to_string().contains("a.gltf:2:"), "{error}");
-    assert!(error.to_string().contains("invalid type: string \"x\", expected usize"), "{error}");
+    let told = "a value is the text \"x\", must be a whole number, 0 or above";
+    assert!(error.to_string().contains(told), "{error}");
     let deep = format!("{{\"asset\": {{\"version\": \"2.0\"}}, \"extras\": {}", "[".repeat(100_000));
     assert!(error_of(load("a.gltf", deep)).starts_with("a.gltf:1:"));
-    assert!(error_of(load("a.gltf", "{")).contains("EOF while parsing"));
+    assert!(error_of(load("a.gltf", "{")).contains("is no JSON: the file ends within an object"));
+}
+
+#[test]
+fn older_documents_are_refused_by_their_version_however_it_is_written() {
+    let version = |version: Value| error_of(gltf(&with(square(), "/asset/version", version)));
+    assert_eq!(version(json!("1.0")), "a.gltf: /asset/version: is `1.0`; 2.0 is read");
+    assert_eq!(version(json!(1)), "a.gltf: /asset/version: is `1`; 2.0 is read");
+    assert_eq!(version(json!(1.1)), "a.gltf: /asset/version: is `1.1`; 2.0 is read");
+    assert!(
+        version(json!([2])).ends_with(": the version must be text, as \"2.0\""),
+        "{}",
+        version(json!([2]))
+    );
+    assert_eq!(
+        version(json!("x".repeat(1000))).len(),
+        "a.gltf: /asset/version: is ``; 2.0 is read".len() + 83
+    );
 }
 
 #[test]
@@ -244,10 +262,31 @@ fn buffers_are_bounded_in_all_and_a_file_of_several_is_held_once() {
     };
     let three = ["b.bin", "c.bin", "d.bin"];
     assert_eq!(load(three, 3 * bytes.len()).unwrap().triangle_count(), 2);
-    assert_eq!(load(["b.bin", "./b.bin", "././b.bin"], bytes.len()).unwrap().triangle_count(), 2);
+    assert_eq!(load(["b.bin", "./b.bin", "../models/b.bin"], bytes.len()).unwrap().triangle_count(), 2);
     let most = 2 * bytes.len();
     let error = error_of(load(three, most));
     assert_eq!(error, format!("a.gltf: /buffers/2/uri: the buffers are longer than {most} bytes in all"));
+}
+
+#[test]
+fn the_triangles_of_strips_are_held_against_the_memory_limit() {
+    let bytes = [square_bytes(), vec![0; 60_000]].concat();
+    let document = with(square(), "/buffers/0", json!({"uri": data_uri(&bytes), "byteLength": bytes.len()}));
+    let document = with(document, "/bufferViews/2/byteLength", json!(60_000));
+    let document = with(
+        document,
+        "/accessors/2",
+        json!({"bufferView": 2, "componentType": 5121, "count": 60_000, "type": "SCALAR"}),
+    );
+    let document = with(document, "/meshes/0/primitives/0/mode", json!(5)).to_string();
+    let within = |memory: u64| {
+        let limits = Limits { memory, ..Limits::default() };
+        Files::new().with("a.gltf", &document).load_within("a.gltf", limits)
+    };
+    assert!(within(6_000_000).is_ok());
+    let error = error_of(within(5_000_000));
+    let told = "a.gltf: /meshes/0/primitives/0: from here on more than 5000000 bytes of memory are needed";
+    assert_eq!(error, told);
 }
 
 #[test]

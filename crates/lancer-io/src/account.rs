@@ -1,0 +1,75 @@
+//! What has been read for one scene, and what its textures hold: many small files are bounded together.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// How many pixels textures may hold for each byte of the scene's files, all together. A photograph's byte stands for up to
+/// ten pixels, a flat image's for hundreds, as a bomb's does. Untuned.
+const PIXELS_PER_BYTE: u64 = 24;
+
+/// Bytes of a pixel as it is held.
+const BYTES_PER_PIXEL: u64 = 3;
+
+/// Shared by a resolver and its copies.
+#[derive(Debug, Default)]
+pub(crate) struct Account(Mutex<Sums>);
+
+#[derive(Debug, Default)]
+struct Sums {
+    /// Files that were read, each counted once whatever it was called.
+    files: HashSet<PathBuf>,
+    /// Their bytes.
+    read: u64,
+    /// Bytes that textures hold.
+    held: u64,
+}
+
+impl Account {
+    /// Counts a file that was read.
+    pub(crate) fn read(&self, file: PathBuf, bytes: u64) {
+        let mut sums = self.sums();
+        if sums.files.insert(file) {
+            sums.read = sums.read.saturating_add(bytes);
+        }
+    }
+
+    /// Counts bytes that a texture holds.
+    pub(crate) fn hold(&self, bytes: u64) {
+        let mut sums = self.sums();
+        sums.held = sums.held.saturating_add(bytes);
+    }
+
+    /// What is wrong with decoding `bytes` more of textures, of which one may have `most_pixels`.
+    pub(crate) fn excess(&self, bytes: u64, most_pixels: u64) -> Option<String> {
+        let Sums { read, held, .. } = *self.sums();
+        let pixels = most_pixels.max(read.saturating_mul(PIXELS_PER_BYTE));
+        let most = pixels.saturating_mul(BYTES_PER_PIXEL);
+        let needed = held.saturating_add(bytes);
+        (needed > most).then(|| {
+            format!("with the other textures {needed} bytes are needed, more than {most}, the most for files of {read} bytes")
+        })
+    }
+
+    fn sums(&self) -> MutexGuard<'_, Sums> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn textures_may_hold_as_much_as_one_or_as_their_files_are_worth() {
+        let account = Account::default();
+        assert_eq!(account.excess(300, 100), None);
+        assert!(account.excess(301, 100).is_some());
+        account.hold(200);
+        assert!(account.excess(101, 100).is_some());
+        account.read("a.png".into(), 30);
+        account.read("a.png".into(), 30);
+        assert_eq!(account.excess(30 * 24 * 3 - 200, 100), None);
+        assert!(account.excess(30 * 24 * 3 - 199, 100).is_some());
+    }
+}
