@@ -4,7 +4,7 @@
 //! memory than [`MOST_MEMORY`], or by more time than the fuzzer allows.
 
 use lancer_core::render::{Control, render};
-use lancer_core::scene::{AmbientOcclusion, NodeId, Scene, Settings, Shape};
+use lancer_core::scene::{AmbientOcclusion, Scene, Settings, Shape};
 use lancer_core::world::{CompileOptions, World};
 use lancer_io::diagnostics::LoadError;
 use lancer_io::image::{decode_picture, load_texture, provenance_of};
@@ -22,9 +22,9 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// What reading one input may take, in bytes beyond what the fuzzer itself holds.
 pub const MOST_MEMORY: usize = 64 << 20;
 
-/// The most triangles and other shapes of a scene that is compiled and rendered: beyond them a run tells little for its
-/// time.
-const MOST_RENDERED: u64 = 2_000;
+/// The most objects of a scene that is compiled and rendered, times the triangles of the largest: beyond that a run tells
+/// little for its time.
+const MOST_RENDERED: u64 = 20_000;
 
 /// The separator between the files of one input: a line of its own.
 const SEPARATOR: &[u8] = b"\n%%\n";
@@ -41,6 +41,8 @@ pub fn limits() -> Limits {
     Limits {
         file_bytes: 4 << 20,
         triangles: 20_000,
+        memory: 24 << 20,
+        objects: 4_000,
         texture_pixels: 1 << 16,
         syntax_nodes: 20_000,
         ..Limits::default()
@@ -164,7 +166,13 @@ fn within_memory<T>(action: impl FnOnce() -> T) -> T {
 }
 
 fn compile_and_render(mut scene: Scene) {
-    if drawn(&scene) > MOST_RENDERED {
+    let Ok(drawn) = World::count_objects(&scene) else { return };
+    assert!(drawn <= limits().objects, "more objects than the limit");
+    let largest = scene.nodes().iter().map(|node| match &node.shape {
+        Some(Shape::Mesh(mesh)) => mesh.triangle_count() as u64,
+        _ => 1,
+    });
+    if drawn * largest.max().unwrap_or(0) > MOST_RENDERED {
         return;
     }
     scene.settings = Settings {
@@ -179,25 +187,4 @@ fn compile_and_render(mut scene: Scene) {
     if let Ok(picture) = render(&world, &scene.camera, &scene.settings, None, &Control::default()) {
         assert_eq!((picture.image.width(), picture.image.height()), (6, 4));
     }
-}
-
-/// The triangles and other shapes that a scene draws, counted as often as they are placed.
-fn drawn(scene: &Scene) -> u64 {
-    let mut known = vec![None; scene.nodes().len()];
-    scene.roots().iter().fold(0, |sum, &root| drawn_below(scene, root, &mut known).saturating_add(sum))
-}
-
-fn drawn_below(scene: &Scene, id: NodeId, known: &mut [Option<u64>]) -> u64 {
-    if let Some(count) = known[id.index()] {
-        return count;
-    }
-    let node = scene.node(id);
-    let own = match &node.shape {
-        Some(Shape::Mesh(mesh)) => mesh.triangle_count() as u64,
-        shape => u64::from(shape.is_some()),
-    };
-    let below = |sum: u64, &child| drawn_below(scene, child, known).saturating_add(sum);
-    let count = node.children.iter().fold(own, below);
-    known[id.index()] = Some(count);
-    count
 }

@@ -71,7 +71,8 @@ impl Resolver {
 
     /// The resolver for what is in a packed file.
     pub(crate) fn within(&self, packed: Packed) -> Self {
-        let limits = self.limits.of_packed(packed.length());
+        // Only the model is granted less: files beside a packed one are not packed.
+        let limits = Limits { memory: self.limits.of_packed(packed.length()).memory, ..self.limits };
         Self { packed: Some(Arc::new(packed)), limits, ..self.clone() }
     }
 

@@ -45,6 +45,13 @@ fn gzip_files_are_read_as_what_they_hold_with_what_lies_beside_them() {
 }
 
 #[test]
+fn what_lies_beside_a_gzip_file_may_be_larger_than_it_may_unpack_to() {
+    let padded = MTL.to_owned() + &"# padding\n".repeat(2 << 20);
+    let files = Files::new().with("a.obj.gz", gzip(OBJ)).with("parts/a.mtl", padded);
+    assert!(is_red(&files.load("a.obj.gz").unwrap()));
+}
+
+#[test]
 fn the_format_may_be_in_the_header() {
     let mut encoder = flate2::GzBuilder::new().filename("a.off").write(Vec::new(), Compression::fast());
     encoder.write_all(b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();

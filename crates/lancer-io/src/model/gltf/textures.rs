@@ -3,7 +3,7 @@
 use super::buffers::{Buffers, is_data};
 use super::document::Document;
 use super::fault::{Fault, Result, Warnings, entry};
-use crate::diagnostics::LoadError;
+use crate::diagnostics::{Diagnostic, LoadError};
 use crate::image::{load_texture, texture_of_bytes};
 use crate::resolver::Resolver;
 use lancer_core::scene::ImageTexture;
@@ -65,8 +65,11 @@ impl<'a> Textures<'a> {
         let here = format!("/images/{index}");
         let image = &self.document.images[index];
         let broken = |error: LoadError| {
-            let messages = error.diagnostics.into_iter().map(|diagnostic| diagnostic.message);
-            Fault::new(&here, messages.collect::<Vec<_>>().join("; "))
+            let told = |Diagnostic { message, hint, .. }: Diagnostic| match hint {
+                Some(hint) => format!("{message} ({hint})"),
+                None => message,
+            };
+            Fault::new(&here, error.diagnostics.into_iter().map(told).collect::<Vec<_>>().join("; "))
         };
         // What an image in the file is called in messages, and nothing that is opened.
         let name = image.name.as_deref().unwrap_or("image");

@@ -171,7 +171,8 @@ fn what_a_texture_lacks_is_told_and_the_factor_stays() {
         ),
         (
             json!({"uri": "data:image/png;base64,AAAA"}),
-            "/images/0: is not an image of a format that is read; the texture is left out",
+            "/images/0: is not an image of a format that is read (textures are read from PNG, JPEG, WebP, TIFF, BMP, TGA); \
+             the texture is left out",
         ),
         (json!({"uri": "data:image/png;base64,??"}), "/images/0/uri: is no base64: "),
         (
