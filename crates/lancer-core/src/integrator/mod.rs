@@ -4,14 +4,16 @@
 //! every ray on the way. It knows neither threads, tiles nor nodes.
 
 mod ambient_occlusion;
+mod camera_rays;
 mod listener;
 #[cfg(test)]
 mod tests;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusionSampler;
+pub use camera_rays::CameraRays;
 pub use listener::{Listener, RayId, RayKind, Silent, SpawnEvent};
-pub use whitted::{CameraRays, Scratch, Whitted};
+pub use whitted::{Scratch, Whitted};
 
 /// Rays traced, by kind, and what was cut short.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@
 //!
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
-use super::{AmbientOcclusionSampler, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
+use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
 use crate::accel::triangles::bits;
 use crate::accel::{Tally, Uncounted};
 use crate::cancel::CancelToken;
@@ -36,14 +36,14 @@ pub struct Whitted<'w> {
 pub struct Scratch {
     /// For each camera ray of a packet.
     pending: [VecDeque<PendingRay>; LANES],
-    light: Light,
+    lighting: Lighting,
 }
 
 const LANES: usize = RayPacket::LANES;
 
 /// What the lights do at the surfaces that rays have met: for each surface in turn, by light.
 #[derive(Clone, Debug, Default)]
-struct Light {
+struct Lighting {
     terms: Vec<Option<LightTerm>>,
     /// For each light the surfaces that it reaches, a bit for each.
     visible: Vec<u32>,
@@ -148,9 +148,9 @@ impl<'w> Whitted<'w> {
         listeners: &mut [L],
         tally: &T,
     ) -> [Rgb; LANES] {
-        let Scratch { pending, light } = scratch;
+        let Scratch { pending, lighting } = scratch;
         let mut walk =
-            Walk { integrator: self, pending, light, counts, listeners, tally, next_id: [1; LANES] };
+            Walk { integrator: self, pending, lighting, counts, listeners, tally, next_id: [1; LANES] };
         let mut radiances = walk.run(rays, media);
         for radiance in &mut radiances {
             // In the precision of a pixel, which holds less than this one does.
@@ -162,26 +162,17 @@ impl<'w> Whitted<'w> {
         radiances
     }
 
-    /// c_a at the surface that a camera ray meets; 1 where it meets none.
+    /// c_a at the surfaces that camera rays meet; 1 where one meets none.
     ///
-    /// With the key of [`Whitted::radiance`] it is the factor of the ambient term that is found there.
-    pub fn occlusion(&self, ray: &Ray, key: Key, counts: &mut RayCounts) -> f64 {
-        counts.primary += 1;
-        self.world.intersect(ray).map_or(1.0, |hit| {
-            let (at, _) = self.world.seen_surface(ray, &hit, &Uncounted);
-            self.occlusion_at(&at, key, counts)
-        })
-    }
-
-    /// c_a for camera rays, each as [`Whitted::occlusion`] finds it.
+    /// With the keys of [`Whitted::radiances`] they are the factors of the ambient terms that are found there.
     pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
-        counts.primary += rays.count as u64;
-        let hits = self.intersect(&rays.packet, rays.lanes(), &Uncounted);
+        counts.primary += rays.count() as u64;
+        let hits = self.intersect(rays.packet(), rays.lanes(), &Uncounted);
         let mut occlusions = [1.0; LANES];
         for (lane, hit) in hits.iter().enumerate() {
             if let Some(hit) = hit {
-                let (at, _) = self.world.seen_surface(&rays.packet.ray(lane), hit, &Uncounted);
-                occlusions[lane] = self.occlusion_at(&at, rays.keys[lane], counts);
+                let (at, _) = self.world.seen_surface(&rays.packet().ray(lane), hit, &Uncounted);
+                occlusions[lane] = self.occlusion_at(&at, rays.keys()[lane], counts);
             }
         }
         occlusions
@@ -215,54 +206,6 @@ impl<'w> Whitted<'w> {
     }
 }
 
-/// Up to sixteen camera rays, and the keys of their random numbers.
-#[derive(Clone, Debug)]
-pub struct CameraRays {
-    packet: RayPacket,
-    keys: [Key; LANES],
-    count: usize,
-}
-
-impl CameraRays {
-    /// Adds a ray.
-    ///
-    /// # Panics
-    /// Where there are [`RayPacket::LANES`] already.
-    #[inline]
-    pub fn push(&mut self, ray: &Ray, key: Key) {
-        self.packet.set(self.count, ray);
-        self.keys[self.count] = key;
-        self.count += 1;
-    }
-
-    /// Forgets all rays.
-    pub fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The rays, in the order in which they were added.
-    pub fn iter(&self) -> impl Iterator<Item = (Ray, Key)> {
-        (0..self.count).map(|lane| (self.packet.ray(lane), self.keys[lane]))
-    }
-
-    /// A bit for each.
-    fn lanes(&self) -> u32 {
-        (1 << self.count) - 1
-    }
-}
-
-impl Default for CameraRays {
-    fn default() -> Self {
-        let packet = RayPacket::splat(&Ray::new(DVec3::ZERO, DVec3::ONE));
-        Self { packet, keys: [Key::camera(0, 0, 0); LANES], count: 0 }
-    }
-}
-
 /// So many rays are traced together; fewer go one by one.
 const WORTH_A_PACKET: u32 = 4;
 
@@ -270,7 +213,7 @@ const WORTH_A_PACKET: u32 = 4;
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
     pending: &'a mut [VecDeque<PendingRay>; LANES],
-    light: &'a mut Light,
+    lighting: &'a mut Lighting,
     counts: &'a mut RayCounts,
     listeners: &'a mut [L],
     tally: &'a T,
@@ -294,15 +237,15 @@ struct Arrival<'a> {
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
         let mut radiances = [Rgb::BLACK; LANES];
-        let mut paths = first.keys.map(|key| Path {
+        let mut paths = first.keys().map(|key| Path {
             kind: RayKind::Primary,
             throughput: Rgb::WHITE,
             depth: self.integrator.depth,
             key,
             media: media.clone(),
         });
-        self.step(RayId(0), &first.packet, first.lanes(), &paths, &mut radiances);
-        let mut rays = first.packet.clone();
+        self.step(RayId(0), first.packet(), first.lanes(), &paths, &mut radiances);
+        let mut rays = first.packet().clone();
         for id in 1.. {
             let mut wanted = 0;
             for (lane, pending) in self.pending.iter_mut().enumerate() {
@@ -365,7 +308,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             };
             arrivals.push(Arrival { lane, id, path, ray, at, touching, point });
         }
-        self.find_light(&arrivals);
+        self.find_lighting(&arrivals);
         for (index, arrival) in arrivals.iter().enumerate() {
             let &Arrival { lane, path, .. } = arrival;
             self.listeners[lane].begin_ray(id, path.kind, path.throughput, &arrival.ray);
@@ -398,15 +341,15 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     }
 
     /// Finds what each light does at each surface, and whether it reaches it.
-    fn find_light(&mut self, arrivals: &[Arrival]) {
+    fn find_lighting(&mut self, arrivals: &[Arrival]) {
         let integrator = self.integrator;
         let lights = integrator.world.lights();
-        self.light.terms.clear();
+        self.lighting.terms.clear();
         for arrival in arrivals {
-            self.light.terms.extend(lights.iter().map(|light| LightTerm::new(&arrival.point, light)));
+            self.lighting.terms.extend(lights.iter().map(|light| LightTerm::new(&arrival.point, light)));
         }
-        self.light.visible.clear();
-        self.light.visible.resize(lights.len(), u32::MAX);
+        self.lighting.visible.clear();
+        self.lighting.visible.resize(lights.len(), u32::MAX);
         if !integrator.shadows || arrivals.is_empty() {
             return;
         }
@@ -414,22 +357,23 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         for (place, light) in lights.iter().enumerate() {
             let mut wanted = 0;
             for (index, arrival) in arrivals.iter().enumerate() {
-                if self.light.terms[index * lights.len() + place].is_some() {
+                if self.lighting.terms[index * lights.len() + place].is_some() {
                     segments.set(index, &arrival.at.segment_to(light.position));
                     wanted |= 1 << index;
                 }
             }
             self.counts.shadow += u64::from(u32::count_ones(wanted));
-            self.light.visible[place] = !integrator.occluded(&segments, wanted, self.tally);
+            self.lighting.visible[place] = !integrator.occluded(&segments, wanted, self.tally);
         }
     }
 
     /// The sum over the lights, in their order.
     fn lights(&mut self, index: usize, arrival: &Arrival) -> Rgb {
         let lights = self.integrator.world.lights();
-        let terms = &self.light.terms[index * lights.len()..];
+        let terms = &self.lighting.terms[index * lights.len()..];
         let mut radiance = Rgb::BLACK;
-        for (place, ((light, term), visible)) in lights.iter().zip(terms).zip(&self.light.visible).enumerate()
+        for (place, ((light, term), visible)) in
+            lights.iter().zip(terms).zip(&self.lighting.visible).enumerate()
         {
             let Some(term) = term else { continue };
             let visible = visible >> index & 1 == 1;
