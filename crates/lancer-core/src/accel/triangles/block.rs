@@ -23,22 +23,22 @@ pub(super) struct Block {
     pub(super) ids: [u32; BLOCK],
 }
 
-/// What a ray does with the triangles of a block, a bit for each triangle.
+/// What rays do with triangles, a bit for each pair of a ray and a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Verdict<S: Simd> {
-    /// Triangles that may be hit; all others are not.
+pub(super) struct Verdict<V> {
+    /// Pairs that may be a hit; all others are none.
     pub(super) maybe: u32,
-    /// Those of them that are hit for sure.
+    /// Those of them that are a hit for sure.
     pub(super) sure: u32,
     /// Where a triangle is hit: no sooner than `numerator_low / denominator_high`, and if it is sure no later than
     /// `numerator_high / denominator_low`.
-    pub(super) numerator: f32x4<S>,
-    pub(super) numerator_error: f32x4<S>,
-    pub(super) denominator: f32x4<S>,
-    pub(super) denominator_error: f32x4<S>,
+    pub(super) numerator: V,
+    pub(super) numerator_error: V,
+    pub(super) denominator: V,
+    pub(super) denominator_error: V,
 }
 
-impl<S: Simd> Verdict<S> {
+impl<S: Simd> Verdict<f32x4<S>> {
     /// Where a triangle is hit at the soonest: at 0 where the denominator may vanish, since nothing is known then.
     #[inline(always)]
     pub(super) fn earliest(&self, lane: usize) -> f32 {
@@ -57,16 +57,17 @@ impl<S: Simd> Verdict<S> {
     }
 }
 
-/// The parts of a ray, one number a lane.
+/// The parts of rays that a test wants, one ray a lane, or the same in all.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BlockRay<S: Simd> {
-    origin: [f32x4<S>; 3],
-    origin_rest: [f32x4<S>; 3],
-    direction: [f32x4<S>; 3],
-    origin_error: f32x4<S>,
+pub(super) struct TestRays<V> {
+    pub(super) origin: [V; 3],
+    pub(super) origin_rest: [V; 3],
+    pub(super) direction: [V; 3],
+    pub(super) origin_error: V,
 }
 
-impl<S: Simd> BlockRay<S> {
+impl<S: Simd> TestRays<f32x4<S>> {
+    /// One ray, for a block of triangles.
     #[inline(always)]
     pub(super) fn new(simd: S, ray: &NarrowRay) -> Self {
         Self {
@@ -74,6 +75,63 @@ impl<S: Simd> BlockRay<S> {
             origin_rest: splat3(simd, ray.origin_rest),
             direction: splat3(simd, ray.direction),
             origin_error: f32x4::splat(simd, ray.origin_error),
+        }
+    }
+}
+
+impl<V> TestRays<V> {
+    /// Tests rays against triangles, lane by lane, for hits with `s` in (0, `end`). Of the lanes, `present` count.
+    #[inline(always)]
+    pub(super) fn test<S: Simd>(&self, simd: S, [a, b, c]: [[V; 3]; 3], present: u32, end: V) -> Verdict<V>
+    where
+        V: SimdFloat<S, Element = f32>,
+    {
+        let (e1, e2) = (sub(b, a), sub(c, a));
+        let from_a = add(sub(self.origin, a), self.origin_rest);
+        let p = cross(self.direction, e2);
+        let q = cross(from_a, e1);
+        let determinant = dot(e1, p);
+        // Everything is turned so that the determinant is positive.
+        let flip = determinant.simd_lt(V::splat(simd, 0.0));
+        let turn = |x: V| flip.select(-x, x);
+        let denominator = turn(determinant);
+        let (u, v, numerator) = (turn(dot(from_a, p)), turn(dot(self.direction, q)), turn(dot(e2, q)));
+
+        // With S = |from_a|, E = the longer edge, both by their largest component, and e the error of the origin,
+        // the errors are below 64 u S E + 8 e E of u and v, 64 u E^2 of the determinant, and E times the former of
+        // the numerator. Derived in docs/how-it-works/kernels.md.
+        let edge = largest(e1).max(largest(e2));
+        let reach = largest(from_a);
+        let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + self.origin_error * 8.0) + UNDERFLOW;
+        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
+        let numerator_error = error * edge + UNDERFLOW;
+        let sum_error = error * 3.0 + denominator_error * 2.0;
+        let rest = denominator - u - v;
+        let limit = denominator * end;
+        let limit_error = denominator_error * end + limit * (8.0 * UNIT_ROUNDOFF) + numerator_error;
+
+        let in_reach = |value: V, error: V| value.simd_ge(-error);
+        let beyond = |value: V, error: V| value.simd_gt(error);
+        let maybe = in_reach(u, error)
+            & in_reach(v, error)
+            & in_reach(rest, sum_error)
+            & in_reach(numerator, numerator_error)
+            & in_reach(limit - numerator, limit_error)
+            | denominator.simd_le(denominator_error);
+        let sure = beyond(u, error)
+            & beyond(v, error)
+            & beyond(rest, sum_error)
+            & beyond(numerator, numerator_error)
+            & beyond(limit - numerator, limit_error)
+            & beyond(denominator, denominator_error);
+        let maybe = maybe.to_bitmask() as u32 & present;
+        Verdict {
+            maybe,
+            sure: sure.to_bitmask() as u32 & maybe,
+            numerator,
+            numerator_error,
+            denominator,
+            denominator_error,
         }
     }
 }
@@ -98,58 +156,14 @@ impl Block {
 
     /// Tests a ray against the first `count` triangles, for hits with `s` in (0, `end`).
     #[inline(always)]
-    pub(super) fn test<S: Simd>(&self, simd: S, ray: &BlockRay<S>, count: usize, end: f32) -> Verdict<S> {
-        let splat = |x: f32| f32x4::splat(simd, x);
-        let a: [f32x4<S>; 3] = load3(simd, &self.corners[0]);
-        let b = load3(simd, &self.corners[1]);
-        let c = load3(simd, &self.corners[2]);
-        let (e1, e2) = (sub(b, a), sub(c, a));
-        let from_a = add(sub(ray.origin, a), ray.origin_rest);
-        let p = cross(ray.direction, e2);
-        let q = cross(from_a, e1);
-        let determinant = dot(e1, p);
-        // Everything is turned so that the determinant is positive.
-        let flip = determinant.simd_lt(splat(0.0));
-        let turn = |x: f32x4<S>| flip.select(-x, x);
-        let denominator = turn(determinant);
-        let (u, v, numerator) = (turn(dot(from_a, p)), turn(dot(ray.direction, q)), turn(dot(e2, q)));
-
-        // With S = |from_a|, E = the longer edge, both by their largest component, and e the error of the origin,
-        // the errors are below 64 u S E + 8 e E of u and v, 64 u E^2 of the determinant, and E times the former of
-        // the numerator. Derived in docs/how-it-works/kernels.md.
-        let edge = largest(e1).max(largest(e2));
-        let reach = largest(from_a);
-        let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + ray.origin_error * 8.0) + UNDERFLOW;
-        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
-        let numerator_error = error * edge + UNDERFLOW;
-        let sum_error = error * 3.0 + denominator_error * 2.0;
-        let rest = denominator - u - v;
-        let limit = denominator * end;
-        let limit_error = denominator_error * end + limit * (8.0 * UNIT_ROUNDOFF) + numerator_error;
-
-        let in_reach = |value: f32x4<S>, error: f32x4<S>| value.simd_ge(-error);
-        let beyond = |value: f32x4<S>, error: f32x4<S>| value.simd_gt(error);
-        let maybe = in_reach(u, error)
-            & in_reach(v, error)
-            & in_reach(rest, sum_error)
-            & in_reach(numerator, numerator_error)
-            & in_reach(limit - numerator, limit_error)
-            | denominator.simd_le(denominator_error);
-        let sure = beyond(u, error)
-            & beyond(v, error)
-            & beyond(rest, sum_error)
-            & beyond(numerator, numerator_error)
-            & beyond(limit - numerator, limit_error)
-            & beyond(denominator, denominator_error);
-        let present = (1 << count) - 1;
-        let maybe = maybe.to_bitmask() as u32 & present;
-        Verdict {
-            maybe,
-            sure: sure.to_bitmask() as u32 & maybe,
-            numerator,
-            numerator_error,
-            denominator,
-            denominator_error,
-        }
+    pub(super) fn test<S: Simd>(
+        &self,
+        simd: S,
+        ray: &TestRays<f32x4<S>>,
+        count: usize,
+        end: f32,
+    ) -> Verdict<f32x4<S>> {
+        let corner = |c: usize| load3(simd, &self.corners[c]);
+        ray.test(simd, [corner(0), corner(1), corner(2)], (1 << count) - 1, f32x4::splat(simd, end))
     }
 }

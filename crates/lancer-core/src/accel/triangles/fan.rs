@@ -9,7 +9,7 @@
 //! Source of the masks: Laine, Karras, "Two methods for fast ray-cast ambient occlusion" (EGSR 2010).
 
 use super::TriangleTree;
-use super::block::{BLOCK, Block, BlockRay};
+use super::block::{BLOCK, Block, TestRays};
 use super::lanes::{cross, dot, largest, load3, splat3, sub};
 use super::ray::{
     LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened,
@@ -502,7 +502,7 @@ fn alone<S: Simd>(
     decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> bool {
     let ray = fan.ray(i);
-    let block_ray = BlockRay::new(simd, &ray);
+    let block_ray = TestRays::new(simd, &ray);
     let sure_end = fan.reach * (1.0 - 1e-5);
     let mut search =
         Alone { simd, tree, fan, ray: &ray, block_ray, sure_end, i, tally, decide, found: false };
@@ -516,7 +516,7 @@ struct Alone<'a, S: Simd, T, D> {
     tree: &'a TriangleTree,
     fan: &'a Fan,
     ray: &'a NarrowRay,
-    block_ray: BlockRay<S>,
+    block_ray: TestRays<f32x4<S>>,
     sure_end: f32,
     i: usize,
     tally: &'a T,

@@ -7,9 +7,9 @@
 //! Boulos, Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies" (2007), for packets.
 
 use super::TriangleTree;
-use super::block::{BLOCK, Block, BlockRay};
-use super::lanes::{add, cross, dot, largest, load3, splat3, sub};
-use super::ray::{Clipped, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
+use super::block::{BLOCK, Block, TestRays, Verdict};
+use super::lanes::{load3, splat3};
+use super::ray::{Clipped, NarrowRay, UNIT_ROUNDOFF};
 use super::single::{self, Candidate, Candidates, add_leaf};
 use super::walk::{LeafVisitor, STACK, walk_from};
 use crate::accel::bvh::{Child, WideNode};
@@ -19,7 +19,7 @@ use crate::shape::Hit;
 use crate::shape::triangle::{Canonical, Nearest};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, f32x16};
+use fearless_simd::{f32x4, f32x8, f32x16};
 
 const LANES: usize = RayPacket::LANES;
 
@@ -34,7 +34,7 @@ const ALONE: u32 = 2;
 pub(crate) const DONE: f32 = -1.0;
 
 /// A packet in `f32`; see [`NarrowRay`] for its parts.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct NarrowPacket {
     origin: [Lane; 3],
     origin_rest: [Lane; 3],
@@ -57,22 +57,7 @@ impl NarrowPacket {
     /// Prepares the rays `wanted` for what lies within `bounds`.
     #[inline(always)]
     pub(crate) fn new(rays: &RayPacket, wanted: u32, bounds: &Bounds) -> Self {
-        let zero = [0.0; LANES];
-        let mut packet = Self {
-            origin: [zero; 3],
-            origin_rest: [zero; 3],
-            direction: [zero; 3],
-            inverse: [zero; 3],
-            enter_offset: [zero; 3],
-            leave_offset: [zero; 3],
-            margin: zero,
-            origin_error: zero,
-            end: zero,
-            start: [0.0; LANES],
-            scale: [0.0; LANES],
-            ready: 0,
-            out_of_range: 0,
-        };
+        let mut packet = Self::default();
         let (mut meets, mut fits) = ([false; LANES], [false; LANES]);
         for lane in 0..LANES {
             let clipped = Clipped::new(&rays.ray(lane), bounds);
@@ -128,9 +113,7 @@ impl NarrowPacket {
     /// The parameter of a t of a ray; see [`NarrowRay::up_to`].
     #[inline(always)]
     pub(crate) fn up_to(&self, lane: usize, t: f64) -> f32 {
-        let s = t * self.scale[lane] - self.start[lane];
-        let s = (s as f32).max(0.0) * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.origin_error[lane];
-        s.min(self.end[lane])
+        self.ray(lane, self.end[lane]).up_to(t)
     }
 
     /// The ends of the rays of a group; the others are done with.
@@ -349,31 +332,20 @@ fn rays_that_meet<S: Simd>(
     enter.simd_le(leave).to_bitmask() as u32
 }
 
-/// What the rays do with one triangle; see [`super::block::Verdict`].
-struct Verdict<S: Simd> {
-    maybe: u32,
-    sure: u32,
-    numerator: f32x16<S>,
-    numerator_error: f32x16<S>,
-    denominator: f32x16<S>,
-    denominator_error: f32x16<S>,
+/// Where each ray that may hit a triangle hits it at the soonest, and each that does for sure at the latest.
+#[inline(always)]
+fn range<S: Simd>(simd: S, verdict: &Verdict<f32x16<S>>) -> (Lane, Lane) {
+    let &Verdict { numerator, numerator_error, denominator, denominator_error, .. } = verdict;
+    let zero = f32x16::splat(simd, 0.0);
+    let low = (numerator - numerator_error).max(zero);
+    let earliest = low / (denominator + denominator_error) * (1.0 - 4.0 * UNIT_ROUNDOFF);
+    let known = denominator.simd_gt(denominator_error);
+    let latest =
+        (numerator + numerator_error) / (denominator - denominator_error) * (1.0 + 4.0 * UNIT_ROUNDOFF);
+    (known.select(earliest, zero).into(), latest.into())
 }
 
-impl<S: Simd> Verdict<S> {
-    /// Where each ray that may hit the triangle hits it at the soonest, and each that does for sure at the latest.
-    #[inline(always)]
-    fn range(&self, simd: S) -> (Lane, Lane) {
-        let splat = |x: f32| f32x16::splat(simd, x);
-        let low = (self.numerator - self.numerator_error).max(splat(0.0));
-        let earliest = low / (self.denominator + self.denominator_error) * (1.0 - 4.0 * UNIT_ROUNDOFF);
-        let known = self.denominator.simd_gt(self.denominator_error);
-        let latest = (self.numerator + self.numerator_error) / (self.denominator - self.denominator_error)
-            * (1.0 + 4.0 * UNIT_ROUNDOFF);
-        (known.select(earliest, splat(0.0)).into(), latest.into())
-    }
-}
-
-/// Tests the rays against a triangle, for hits with `s` in (0, `end`). As [`Block::test`], with rays for lanes.
+/// Tests the rays `lanes` against a triangle, for hits with `s` in (0, `end`).
 #[inline(always)]
 fn test<S: Simd>(
     simd: S,
@@ -382,61 +354,16 @@ fn test<S: Simd>(
     triangle: usize,
     lanes: u32,
     end: &Lane,
-) -> Verdict<S> {
-    let splat = |x: f32| f32x16::splat(simd, x);
-    let corner = |c: usize| {
-        let corner = &block.corners[c];
-        [corner[0][triangle], corner[1][triangle], corner[2][triangle]]
+) -> Verdict<f32x16<S>> {
+    let rays = TestRays {
+        origin: load3(simd, &packet.origin),
+        origin_rest: load3(simd, &packet.origin_rest),
+        direction: load3(simd, &packet.direction),
+        origin_error: f32x16::load_array_ref(simd, &packet.origin_error),
     };
-    let a: [f32x16<S>; 3] = splat3(simd, corner(0));
-    let (e1, e2) = (sub(splat3(simd, corner(1)), a), sub(splat3(simd, corner(2)), a));
-    let direction: [f32x16<S>; 3] = load3(simd, &packet.direction);
-    let from_a = add(sub(load3(simd, &packet.origin), a), load3(simd, &packet.origin_rest));
-    let p = cross(direction, e2);
-    let q = cross(from_a, e1);
-    let determinant = dot(e1, p);
-    // Everything is turned so that the determinant is positive.
-    let flip = determinant.simd_lt(splat(0.0));
-    let turn = |x: f32x16<S>| flip.select(-x, x);
-    let denominator = turn(determinant);
-    let (u, v, numerator) = (turn(dot(from_a, p)), turn(dot(direction, q)), turn(dot(e2, q)));
-
-    // The errors are those of `Block::test`.
-    let edge = largest(e1).max(largest(e2));
-    let reach = largest(from_a);
-    let origin_error = f32x16::load_array_ref(simd, &packet.origin_error);
-    let end = f32x16::load_array_ref(simd, end);
-    let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + origin_error * 8.0) + UNDERFLOW;
-    let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
-    let numerator_error = error * edge + UNDERFLOW;
-    let sum_error = error * 3.0 + denominator_error * 2.0;
-    let rest = denominator - u - v;
-    let limit = denominator * end;
-    let limit_error = denominator_error * end + limit * (8.0 * UNIT_ROUNDOFF) + numerator_error;
-
-    let in_reach = |value: f32x16<S>, error: f32x16<S>| value.simd_ge(-error);
-    let beyond = |value: f32x16<S>, error: f32x16<S>| value.simd_gt(error);
-    let maybe = in_reach(u, error)
-        & in_reach(v, error)
-        & in_reach(rest, sum_error)
-        & in_reach(numerator, numerator_error)
-        & in_reach(limit - numerator, limit_error)
-        | denominator.simd_le(denominator_error);
-    let sure = beyond(u, error)
-        & beyond(v, error)
-        & beyond(rest, sum_error)
-        & beyond(numerator, numerator_error)
-        & beyond(limit - numerator, limit_error)
-        & beyond(denominator, denominator_error);
-    let maybe = maybe.to_bitmask() as u32 & lanes;
-    Verdict {
-        maybe,
-        sure: sure.to_bitmask() as u32 & maybe,
-        numerator,
-        numerator_error,
-        denominator,
-        denominator_error,
-    }
+    let [a, b, c] = block.triangle(triangle);
+    let corners = [splat3(simd, a), splat3(simd, b), splat3(simd, c)];
+    rays.test(simd, corners, lanes, f32x16::load_array_ref(simd, end))
 }
 
 /// The nearest hits of the rays `wanted`, and which rays are left to be searched one by one.
@@ -499,7 +426,7 @@ impl<S: Simd> Visitor for NearestSearch<'_, S> {
             if verdict.maybe == 0 {
                 continue;
             }
-            let (earliest, latest) = verdict.range(self.simd);
+            let (earliest, latest) = range(self.simd, &verdict);
             for lane in bits(verdict.maybe) {
                 let latest = (verdict.sure >> lane & 1 == 1).then_some(latest[lane]);
                 let (block, triangle) = (block as u32, triangle as u32);
@@ -514,7 +441,7 @@ impl<S: Simd> NearestSearch<'_, S> {
     #[inline(always)]
     fn go_alone(&mut self, child: Child, lane: usize, end: &mut f32) {
         let ray = self.packet.ray(lane, *end);
-        let block_ray = BlockRay::new(self.simd, &ray);
+        let block_ray = TestRays::new(self.simd, &ray);
         let (simd, nodes) = (self.simd, &self.tree.nodes);
         let mut visitor = Alone { search: self, block_ray, lane, end };
         walk_from::<S, true>(simd, nodes, child, &ray, &Uncounted, &mut visitor);
@@ -532,7 +459,7 @@ impl<S: Simd> NearestSearch<'_, S> {
 /// One ray that goes on by itself.
 struct Alone<'a, 't, S: Simd> {
     search: &'a mut NearestSearch<'t, S>,
-    block_ray: BlockRay<S>,
+    block_ray: TestRays<f32x4<S>>,
     lane: usize,
     end: &'a mut f32,
 }

@@ -1,7 +1,7 @@
 //! One ray against the triangles of a mesh.
 
 use super::TriangleTree;
-use super::block::{BLOCK, BlockRay};
+use super::block::{BLOCK, TestRays};
 use super::ray::NarrowRay;
 use super::walk::{LeafVisitor, walk, walk_from};
 use crate::accel::bvh::Child;
@@ -10,7 +10,7 @@ use crate::geometry::Ray;
 use crate::shape::Hit;
 use crate::shape::triangle::{Canonical, Nearest};
 use arrayvec::ArrayVec;
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f32x4};
 
 /// Triangles that may be a ray's nearest hit, kept until its walk has ended. More than one are kept only where two
 /// lie within rounding of each other, as at an edge.
@@ -63,7 +63,7 @@ impl Candidates {
 pub(super) fn add_leaf<S: Simd>(
     simd: S,
     tree: &TriangleTree,
-    ray: &BlockRay<S>,
+    ray: &TestRays<f32x4<S>>,
     leaf: Child,
     end: &mut f32,
     mut add: impl FnMut(Candidate, Option<f32>, &mut f32),
@@ -99,7 +99,7 @@ pub(super) fn intersect<S: Simd>(
         tree,
         ray,
         narrow,
-        block_ray: BlockRay::new(simd, narrow),
+        block_ray: TestRays::new(simd, narrow),
         tally,
         nearest: None,
         candidates: Candidates::default(),
@@ -119,7 +119,7 @@ struct NearestSearch<'a, S: Simd, T> {
     tree: &'a TriangleTree,
     ray: &'a Ray,
     narrow: &'a NarrowRay,
-    block_ray: BlockRay<S>,
+    block_ray: TestRays<f32x4<S>>,
     tally: &'a T,
     nearest: Option<Nearest<'a>>,
     candidates: Candidates,
@@ -156,7 +156,7 @@ pub(super) fn occluded<S: Simd>(
     narrow: &NarrowRay,
     tally: &impl Tally,
 ) -> bool {
-    let block_ray = BlockRay::new(simd, narrow);
+    let block_ray = TestRays::new(simd, narrow);
     let canonical = Canonical::new(ray);
     let mut search = OcclusionSearch { simd, tree, narrow, block_ray, tally, canonical, found: false };
     walk_from::<S, true>(simd, &tree.nodes, start, narrow, tally, &mut search);
@@ -168,7 +168,7 @@ struct OcclusionSearch<'a, S: Simd, T> {
     simd: S,
     tree: &'a TriangleTree,
     narrow: &'a NarrowRay,
-    block_ray: BlockRay<S>,
+    block_ray: TestRays<f32x4<S>>,
     tally: &'a T,
     canonical: Canonical<'a>,
     found: bool,

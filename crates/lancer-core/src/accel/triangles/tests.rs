@@ -206,7 +206,7 @@ fn most_rays_are_settled_without_the_canonical_test() {
         let ray = Ray { t_max: 1e9, ..Ray::new(origin, random.point(0.7) - origin) };
         let Narrowed::Ready(narrow) = NarrowRay::prepare(&ray, &tree.bounds) else { continue };
         dispatch!(tree.level, simd => {
-            let block_ray = block::BlockRay::new(simd, &narrow);
+            let block_ray = block::TestRays::new(simd, &narrow);
             walk::<_, true>(simd, &tree.nodes, &narrow, &Uncounted, &mut |leaf: Child| {
                 let mut left = leaf.count();
                 for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
