@@ -1,12 +1,14 @@
 //! Structures that find what a ray may meet. They know no material, camera or pixel.
 
 mod aabb;
+mod bits;
 pub mod bvh;
 pub mod kd_tree;
 mod tally;
 pub(crate) mod triangles;
 
 pub use aabb::Aabb;
+pub(crate) use bits::bits;
 pub use bvh::{Bvh, Quality};
 pub use kd_tree::{BuildError, KdSettings, KdTree};
 pub use tally::{Tally, Uncounted, Visits};

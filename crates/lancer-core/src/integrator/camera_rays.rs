@@ -43,9 +43,9 @@ impl CameraRays {
         &self.packet
     }
 
-    /// Their keys; more follow, of no ray.
-    pub(super) fn keys(&self) -> &[Key; RayPacket::LANES] {
-        &self.keys
+    /// Their keys.
+    pub(super) fn keys(&self) -> &[Key] {
+        &self.keys[..self.count]
     }
 
     /// A bit for each.

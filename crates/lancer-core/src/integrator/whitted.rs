@@ -7,8 +7,7 @@
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
 use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
-use crate::accel::triangles::bits;
-use crate::accel::{Tally, Uncounted};
+use crate::accel::{Tally, Uncounted, bits};
 use crate::cancel::CancelToken;
 use crate::color::Rgb;
 use crate::geometry::{DVec3, Ray, RayPacket};
@@ -237,13 +236,14 @@ struct Arrival<'a> {
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
         let mut radiances = [Rgb::BLACK; LANES];
-        let mut paths = first.keys().map(|key| Path {
+        let path = |&key: &Key| Path {
             kind: RayKind::Primary,
             throughput: Rgb::WHITE,
             depth: self.integrator.depth,
             key,
             media: media.clone(),
-        });
+        };
+        let mut paths: ArrayVec<Path, LANES> = first.keys().iter().map(path).collect();
         self.step(RayId(0), first.packet(), first.lanes(), &paths, &mut radiances);
         let mut rays = first.packet().clone();
         for id in 1.. {
@@ -281,7 +281,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         id: RayId,
         rays: &RayPacket,
         wanted: u32,
-        paths: &[Path; LANES],
+        paths: &[Path],
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;

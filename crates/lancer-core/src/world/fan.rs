@@ -4,7 +4,7 @@ use super::geometry::{Geometry, TriangleIndex};
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Receiver, visit_fan};
-use crate::accel::{Tally, Uncounted};
+use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::{DMat3, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
 
@@ -161,15 +161,4 @@ impl FanRays<'_> {
             own: None,
         }
     }
-}
-
-/// The places of the bits that are set.
-fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let place = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            place
-        })
-    })
 }

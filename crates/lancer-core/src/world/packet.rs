@@ -2,9 +2,9 @@
 
 use super::geometry::{Geometry, TriangleIndex};
 use super::{Hit, Object, ObjectId, ObjectIndex, World};
-use crate::accel::Uncounted;
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, bits, walk_packet};
+use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
+use crate::accel::{Uncounted, bits};
 use crate::geometry::RayPacket;
 use crate::shape::{self, sphere};
 use fearless_simd::dispatch;

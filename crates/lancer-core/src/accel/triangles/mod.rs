@@ -15,11 +15,12 @@ mod tests;
 mod walk;
 
 pub(crate) use fan::Receiver;
-pub(crate) use packet::{DONE, Lane, NarrowPacket, Visitor, bits, walk_packet};
+pub(crate) use packet::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
 use super::Aabb;
+use super::bits;
 use super::bvh::{BuildError, Bvh, Child, Quality, WideNode, boxes_at};
 use super::tally::{Tally, Uncounted};
 use crate::cancel::CancelToken;

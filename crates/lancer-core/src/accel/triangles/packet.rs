@@ -12,6 +12,7 @@ use super::lanes::{load3, splat3};
 use super::ray::{Clipped, NarrowRay, UNIT_ROUNDOFF};
 use super::single::{self, Candidate, Candidates, add_leaf};
 use super::walk::{LeafVisitor, STACK, walk_from};
+use crate::accel::bits;
 use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
 use crate::geometry::{Bounds, RayPacket};
@@ -170,26 +171,18 @@ impl Beam {
             least: [f32::INFINITY; 3],
             most: [0.0; 3],
         };
-        let mut margin: f32 = 0.0;
-        for lane in 0..LANES {
-            if group >> lane & 1 == 1 {
-                margin = margin.max(packet.margin[lane]);
-            }
-        }
-        // A ray's margin holds for its own slab test; half of it more, for those below.
-        margin *= 1.5;
+        // A ray's margin holds for its own slab test; half of it more, for those of the beam.
+        let margin = 1.5 * bits(group).map(|lane| packet.margin[lane]).fold(0.0, f32::max);
         for (axis, backward) in backward.into_iter().enumerate() {
             let sign = if backward { -1.0 } else { 1.0 };
             let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-            for lane in 0..LANES {
-                if group >> lane & 1 == 1 {
-                    let (origin, inverse) =
-                        (packet.origin[axis][lane] * sign, packet.inverse[axis][lane] * sign);
-                    low = low.min(origin);
-                    high = high.max(origin);
-                    beam.least[axis] = beam.least[axis].min(inverse);
-                    beam.most[axis] = beam.most[axis].max(inverse);
-                }
+            for lane in bits(group) {
+                let origin = packet.origin[axis][lane] * sign;
+                let inverse = packet.inverse[axis][lane] * sign;
+                low = low.min(origin);
+                high = high.max(origin);
+                beam.least[axis] = beam.least[axis].min(inverse);
+                beam.most[axis] = beam.most[axis].max(inverse);
             }
             beam.sign[axis] = sign;
             beam.enter_offset[axis] = -(high + margin);
@@ -535,14 +528,4 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
 #[inline(always)]
 fn few(child: Child, lanes: u32) -> bool {
     !child.is_leaf() || (lanes.count_ones() as usize) < child.count()
-}
-
-/// The places of the bits of a mask.
-#[inline(always)]
-pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let next = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (next < LANES).then_some(next)
-    })
 }
