@@ -41,7 +41,7 @@ pub(crate) fn texture_of_bytes(
 ) -> Result<Arc<ImageTexture>, LoadError> {
     let format = format_of(path, bytes)?;
     let broken = |message: String| LoadError::new(path, message);
-    let decoded = guard::decoded(|| Ok(decode(path, format, bytes, resolver)));
+    let decoded = guard::decoded(|| decode(path, format, bytes, resolver));
     let Decoded { width, height, texels } = decoded.map_err(broken)??;
     resolver.account().hold(size_of_val(&texels[..]) as u64);
     let texture =

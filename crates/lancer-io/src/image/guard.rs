@@ -4,9 +4,9 @@ use ::image::ImageFormat;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What a decoder makes of a file. One that panics (zune-jpeg 0.5 does on some files) has met a broken one.
-pub(super) fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    let failed = |_| Err("is a broken image: its decoder cannot go on with it".to_owned());
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(failed)
+pub(super) fn decoded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
+    let broken = |_| "is a broken image: its decoder cannot go on with it".to_owned();
+    catch_unwind(AssertUnwindSafe(decode)).map_err(broken)
 }
 
 /// How many times the bytes of its pixels a decoder holds of a file: that of JPEG keeps the coefficients of all scans of a
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_a_broken_image() {
-        let broken = decoded(|| -> Result<(), String> { panic!("a test's panic") });
+        let broken = decoded(|| -> () { panic!("a test's panic") });
         assert_eq!(broken, Err("is a broken image: its decoder cannot go on with it".to_owned()));
     }
 

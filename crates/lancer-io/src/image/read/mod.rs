@@ -65,7 +65,7 @@ pub fn read_picture(path: &Path, limits: Limits) -> Result<Picture, LoadError> {
 /// They are of another format, are broken, or hold more than `most_pixels`.
 pub fn decode_picture(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<Picture, LoadError> {
     let broken = |message: String| LoadError::new(path, message);
-    guard::decoded(|| Ok(decode(path, bytes, most_pixels))).map_err(broken)?
+    guard::decoded(|| decode(path, bytes, most_pixels)).map_err(broken)?
 }
 
 fn decode(path: &Path, bytes: &[u8], most_pixels: u64) -> Result<Picture, LoadError> {
@@ -117,7 +117,7 @@ fn read(format: ImageFormat, bytes: &[u8], most_pixels: u64) -> Result<Picture, 
 /// What a file says of how its picture was made: the text of a [`Provenance`](crate::provenance::Provenance). `None`
 /// where it says nothing, or is no picture. No pixel is decoded.
 pub fn provenance_of(bytes: &[u8]) -> Option<String> {
-    guard::decoded(|| Ok(provenance_in(bytes))).ok()?
+    guard::decoded(|| provenance_in(bytes)).ok()?
 }
 
 fn provenance_in(bytes: &[u8]) -> Option<String> {
