@@ -7,9 +7,8 @@ use super::{Plan, lancer_side};
 use crate::Failure;
 use crate::embree::ffi::{Build, Device, Quality, Scene};
 use crate::record::{Ratio, median, seconds};
-use lancer_core::geometry::{DirectionFan, Ray, RayPacket};
 use lancer_core::render::with_threads;
-use lancer_core::world::{CompileOptions, Hit, Intersection, World};
+use lancer_core::world::{CompileOptions, Hit, World};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -157,44 +156,40 @@ impl Rates {
 /// many rays met something.
 pub(super) fn trace(world: &World, lot: &Lot) -> usize {
     if !lot.fans.is_empty() {
-        let count = |blocked: &mut Vec<bool>, fans: &[(Intersection, DirectionFan)]| {
-            lancer_side::occluded_fans(world, fans, lot.reach, blocked);
-            blocked.iter().filter(|blocked| **blocked).count()
-        };
-        return lot.fans.par_chunks(FANS).map_init(Vec::new, count).sum();
-    }
-    let chunks = lot.packets.par_chunks(FANS);
-    if lot.kind.is_occlusion() {
-        let count = |blocked: &mut Vec<bool>, packets: &[(RayPacket, u32)]| {
-            lancer_side::occluded_packets(world, packets, blocked);
-            blocked.iter().filter(|blocked| **blocked).count()
-        };
-        chunks.map_init(Vec::new, count).sum()
+        let trace = |fans: &[_], blocked: &mut _| lancer_side::occluded_fans(world, fans, lot.reach, blocked);
+        count(&lot.fans, FANS, trace, |blocked| *blocked)
+    } else if lot.kind.is_occlusion() {
+        let trace = |packets: &[_], blocked: &mut _| lancer_side::occluded_packets(world, packets, blocked);
+        count(&lot.packets, FANS, trace, |blocked| *blocked)
     } else {
-        let count = |hits: &mut Vec<Option<Hit>>, packets: &[(RayPacket, u32)]| {
-            lancer_side::intersect_packets(world, packets, hits);
-            hits.iter().flatten().count()
-        };
-        chunks.map_init(Vec::new, count).sum()
+        let trace = |packets: &[_], hits: &mut _| lancer_side::intersect_packets(world, packets, hits);
+        count(&lot.packets, FANS, trace, Option::is_some)
     }
 }
 
 /// As [`trace`], ray by ray.
 fn trace_alone(world: &World, lot: &Lot) -> usize {
-    let chunks = lot.rays.par_chunks(CHUNK);
     if lot.kind.is_occlusion() {
-        let count = |blocked: &mut Vec<bool>, rays: &[Ray]| {
-            lancer_side::occluded(world, rays, blocked);
-            blocked.iter().filter(|blocked| **blocked).count()
-        };
-        chunks.map_init(Vec::new, count).sum()
+        let trace = |rays: &[_], blocked: &mut _| lancer_side::occluded(world, rays, blocked);
+        count(&lot.rays, CHUNK, trace, |blocked| *blocked)
     } else {
-        let count = |hits: &mut Vec<Option<Hit>>, rays: &[Ray]| {
-            lancer_side::intersect(world, rays, hits);
-            hits.iter().flatten().count()
-        };
-        chunks.map_init(Vec::new, count).sum()
+        let trace = |rays: &[_], hits: &mut _| lancer_side::intersect(world, rays, hits);
+        count(&lot.rays, CHUNK, trace, Option::is_some)
     }
+}
+
+/// Traces so much of `all` at once. Returns how many of the answers are that something was met.
+fn count<T: Sync, A: Send>(
+    all: &[T],
+    at_once: usize,
+    trace: impl Fn(&[T], &mut Vec<A>) + Sync,
+    is_met: impl Fn(&A) -> bool + Sync,
+) -> usize {
+    let met = |answers: &mut Vec<A>, part: &[T]| {
+        trace(part, answers);
+        answers.iter().filter(|answer| is_met(answer)).count()
+    };
+    all.par_chunks(at_once).map_init(Vec::new, met).sum()
 }
 
 /// How far the answers of both sides differ.
