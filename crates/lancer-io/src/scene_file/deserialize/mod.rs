@@ -10,7 +10,7 @@ mod error;
 mod one_of;
 mod spanned;
 
-pub(crate) use one_of::{Forms, OneOf};
+pub(crate) use one_of::{Forms, OneOf, deserialize_by_forms};
 pub(crate) use spanned::Spanned;
 
 use super::syntax::{Entry, Node, Problem, Scalar, Value};

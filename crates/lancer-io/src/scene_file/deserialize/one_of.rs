@@ -39,6 +39,18 @@ impl<T: Forms> OneOf<T> {
     }
 }
 
+/// Reads types in their [`Forms`].
+macro_rules! deserialize_by_forms {
+    ($($type:ty),+) => {$(
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $crate::scene_file::deserialize::OneOf::deserialize(deserializer)
+            }
+        }
+    )+};
+}
+pub(crate) use deserialize_by_forms;
+
 impl<'de, T: Forms> Visitor<'de> for OneOf<T> {
     type Value = T;
 

@@ -1,7 +1,7 @@
 //! One number a channel: coefficients, intensities and colours.
 
 use super::number::{NotNegative, Number, Range};
-use crate::scene_file::deserialize::{Forms, OneOf};
+use crate::scene_file::deserialize::{Forms, OneOf, deserialize_by_forms};
 use lancer_core::Rgb;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
@@ -97,11 +97,7 @@ fn rgb_from_hex(text: &str) -> Option<Rgb> {
     }
 }
 
-impl<'de> Deserialize<'de> for Color {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(Color);
 
 impl JsonSchema for Color {
     fn schema_name() -> Cow<'static, str> {

@@ -2,7 +2,7 @@
 
 use super::channels::{Channels, Color};
 use super::number::{Fraction, NotNegative, Number, Positive};
-use crate::scene_file::deserialize::{Forms, OneOf, Spanned};
+use crate::scene_file::deserialize::{Forms, Spanned, deserialize_by_forms};
 use lancer_core::Rgb;
 use lancer_core::scene::{Material, Wrap};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -131,23 +131,7 @@ impl Forms for AxisWrap {
     }
 }
 
-impl<'de> Deserialize<'de> for ImageReference {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for WrapFile {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for AxisWrap {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(ImageReference, WrapFile, AxisWrap);
 
 impl JsonSchema for ImageReference {
     fn inline_schema() -> bool {
@@ -216,11 +200,7 @@ impl Forms for SurfaceColor {
     }
 }
 
-impl<'de> Deserialize<'de> for SurfaceColor {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(SurfaceColor);
 
 impl JsonSchema for SurfaceColor {
     fn schema_name() -> Cow<'static, str> {

@@ -3,7 +3,7 @@
 use super::material::MaterialFile;
 use super::number::{CreaseAngle, Number};
 use super::transform::Step;
-use crate::scene_file::deserialize::{Forms, OneOf, Spanned};
+use crate::scene_file::deserialize::{Forms, Spanned, deserialize_by_forms};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, IntoDeserializer};
@@ -141,23 +141,7 @@ impl Forms for ShapeFile {
     }
 }
 
-impl<'de> Deserialize<'de> for MaterialReference {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for ShapeFile {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for MeshReference {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(MaterialReference, ShapeFile, MeshReference);
 
 impl JsonSchema for MaterialReference {
     fn inline_schema() -> bool {

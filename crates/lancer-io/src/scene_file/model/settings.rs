@@ -3,13 +3,13 @@
 use super::channels::Channels;
 use super::number::{Exposure, FieldOfView, NotNegative, Number, Positive, Whole};
 use super::transform::Vector;
-use crate::scene_file::deserialize::{Forms, OneOf};
+use crate::scene_file::deserialize::{Forms, deserialize_by_forms};
 use lancer_core::camera::{Camera, CameraError};
 use lancer_core::film::{Tone, ToneCurve};
 use lancer_core::scene::{AmbientOcclusion, Settings, SettingsError};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
 use serde::de::Unexpected;
-use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 
 /// A perspective camera, in the world.
@@ -117,11 +117,7 @@ impl Forms for ToneFile {
     }
 }
 
-impl<'de> Deserialize<'de> for ToneFile {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(ToneFile);
 
 impl JsonSchema for ToneFile {
     fn inline_schema() -> bool {

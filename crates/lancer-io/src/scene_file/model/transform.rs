@@ -1,12 +1,12 @@
 //! Vectors and transforms.
 
 use super::number::{Finite, Number};
-use crate::scene_file::deserialize::{Forms, OneOf, Spanned};
+use crate::scene_file::deserialize::{Forms, Spanned, deserialize_by_forms};
 use lancer_core::geometry::{DVec3, Transform};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Deserializer, Error, SeqAccess, Unexpected};
+use serde::de::{Error, SeqAccess, Unexpected};
 use std::borrow::Cow;
 
 /// x, y and z.
@@ -127,17 +127,7 @@ pub(crate) fn transform_of(steps: &[Spanned<Step>]) -> Transform {
     steps.iter().fold(Transform::IDENTITY, |before, step| before.then(step.value.to_transform()))
 }
 
-impl<'de> Deserialize<'de> for Factors {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Axis {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        OneOf::deserialize(deserializer)
-    }
-}
+deserialize_by_forms!(Factors, Axis);
 
 impl JsonSchema for Factors {
     fn inline_schema() -> bool {
