@@ -11,7 +11,7 @@ use crate::source::Source;
 use lancer_core::accel::{Accelerator, KdSettings};
 use lancer_core::camera::Camera;
 use lancer_core::film::Tone;
-use lancer_core::render::{Control, Region, RenderError};
+use lancer_core::render::{Control, Region, RenderError, with_threads};
 use lancer_core::scene::{AmbientOcclusion, Scene, Settings};
 use lancer_core::world::CompileOptions;
 use lancer_io::LoadOptions;
@@ -103,7 +103,7 @@ impl Setup {
             source: Source::find(scene)?,
             load: load_options(reading),
             compile: compile_options(work),
-            threads: work.threads.map_or_else(all_cores, |threads| threads as usize),
+            threads: thread_count(work.threads),
             tile_size: work.tile_size.unwrap_or(Control::DEFAULT_TILE_SIZE),
             picture,
         })
@@ -261,7 +261,20 @@ pub(crate) fn compile_options(work: &WorkArgs) -> CompileOptions {
     }
 }
 
-/// One thread a core; one where the system does not tell.
-pub(crate) fn all_cores() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZero::get)
+/// The threads to work on: as many as were asked for, or one a core; one where the system does not tell.
+pub(crate) fn thread_count(asked: Option<u32>) -> usize {
+    let all_cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    asked.map_or_else(all_cores, |threads| threads as usize)
+}
+
+/// Works on so many threads.
+///
+/// # Errors
+/// They cannot be started, or the work fails.
+pub(crate) fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> Result<T, Error> {
+    with_threads(threads, work)
+        .map_err(|error| Error::Render(format!("cannot start {threads} threads: {error}")))?
 }

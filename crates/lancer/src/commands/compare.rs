@@ -2,10 +2,9 @@
 
 use crate::args::{CompareArgs, Metric};
 use crate::error::Error;
-use crate::job::all_cores;
+use crate::job::{on_threads, thread_count};
 use crate::{json, terminal};
 use lancer_core::film::Tone;
-use lancer_core::render::with_threads;
 use lancer_io::compare::Comparison;
 use lancer_io::diagnostics::Diagnostic;
 use lancer_io::image::{ImageFormat, Metadata, encode, read_picture};
@@ -27,11 +26,10 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let drawing = drawing.transpose()?;
     let limits = Limits::default();
     let (a, b) = (read_picture(&args.a, limits)?, read_picture(&args.b, limits)?);
-    let threads = args.threads.map_or_else(all_cores, |threads| threads as usize);
-    let compared = with_threads(threads, || Comparison::of(&a, &b, args.pixels_per_degree))
-        .map_err(|error| Error::Render(format!("cannot start {threads} threads: {error}")))?;
-    let compared = compared.map_err(|error| {
-        Error::Scene(Diagnostic::new(&args.b, format!("{error}, as `{}` has", args.a.display())).into())
+    let compared = on_threads(thread_count(args.threads), || {
+        Comparison::of(&a, &b, args.pixels_per_degree).map_err(|error| {
+            Error::Scene(Diagnostic::new(&args.b, format!("{error}, as `{}` has", args.a.display())).into())
+        })
     })?;
     if let Some((path, format)) = drawing {
         draw(&compared, args, path, format)?;

@@ -3,13 +3,13 @@
 use crate::args::RenderArgs;
 use crate::error::Error;
 use crate::interrupt;
-use crate::job::{Job, Shot};
+use crate::job::{Job, Shot, on_threads};
 use crate::progress::Progress;
 use crate::report::{self, Report, Stages};
 use crate::terminal;
 use lancer_core::integrator::RayCounts;
 use lancer_core::render::passes::{Layer, Pass, PassRender, render_passes};
-use lancer_core::render::{CancelToken, Control, Render, RenderError, Tile, render, with_threads};
+use lancer_core::render::{CancelToken, Control, Render, RenderError, Tile, render};
 use lancer_core::world::World;
 use lancer_io::diagnostics::LoadError;
 use lancer_io::{LoadOptions, Loaded};
@@ -21,8 +21,7 @@ use std::time::{Duration, Instant};
 /// See [`Error`].
 pub(crate) fn run(args: RenderArgs) -> Result<(), Error> {
     let job = Job::new(args)?;
-    let work = with_threads(job.setup.threads, || run_job(&job));
-    work.map_err(|error| Error::Render(format!("cannot start {} threads: {error}", job.setup.threads)))?
+    on_threads(job.setup.threads, || run_job(&job))
 }
 
 fn run_job(job: &Job) -> Result<(), Error> {

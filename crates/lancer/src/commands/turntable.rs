@@ -4,14 +4,14 @@ use super::render::timed;
 use crate::args::{FilmArgs, TurntableArgs};
 use crate::error::Error;
 use crate::film::{FilmDestination, FilmWriter};
-use crate::job::{Setup, Shot, camera_named};
+use crate::job::{Setup, Shot, camera_named, on_threads};
 use crate::progress::{Progress, rays_per_second, short_count};
 use crate::report::{self, ImageJson, RaysJson, SecondsJson, Stages, WorldJson};
 use crate::{interrupt, json, terminal};
 use lancer_core::camera::{Camera, CameraPath};
 use lancer_core::geometry::DVec3;
 use lancer_core::integrator::RayCounts;
-use lancer_core::render::{CancelToken, Control, render, with_threads};
+use lancer_core::render::{CancelToken, Control, render};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_io::Loaded;
@@ -33,10 +33,8 @@ pub(crate) fn run(args: TurntableArgs) -> Result<(), Error> {
     let TurntableArgs { scene, output, film, picture, work, reading, json, quiet } = args;
     let destination = FilmDestination::find(&output)?;
     let setup = Setup::new(Some(&scene), picture, &work, reading)?;
-    let threads = setup.threads;
     let job = FilmJob { setup, destination, film, json, quiet };
-    let work = with_threads(threads, || job.run());
-    work.map_err(|error| Error::Render(format!("cannot start {threads} threads: {error}")))?
+    on_threads(job.setup.threads, || job.run())
 }
 
 struct FilmJob {
@@ -133,12 +131,13 @@ impl FilmJob {
 
     /// The pictures from these cameras. Each is recorded as one of the scene whose own camera is where it is then.
     fn frames(&self, scene: &Scene, shot: &Shot, cameras: Vec<Camera>) -> Frames {
-        let Some(format) = self.destination.picture_format() else {
-            return Frames { cameras, records: None };
-        };
-        let hashes = SceneHash::of_each(scene, &cameras);
-        let record = self.setup.record(scene, shot, SceneHash::of(scene, &shot.camera), format.into());
-        Frames { cameras, records: Some((Provenance { camera: None, ..record }, hashes)) }
+        let records = self.destination.picture_format().and_then(|format| {
+            let hashes = SceneHash::of_each(scene, &cameras);
+            // Each picture's hash takes the place of the first's.
+            let record = self.setup.record(scene, shot, *hashes.first()?, format.into());
+            Some((Provenance { camera: None, ..record }, hashes))
+        });
+        Frames { cameras, records }
     }
 
     /// Renders and writes all pictures.

@@ -3,14 +3,14 @@
 use super::render::{trace, trace_passes};
 use crate::args::VerifyArgs;
 use crate::error::Error;
-use crate::job::{Shot, all_cores, compile_options, load_options};
+use crate::job::{Shot, compile_options, load_options, on_threads, thread_count};
 use crate::passes::encode_as_recorded;
 use crate::progress::Progress;
 use crate::source::Source;
 use crate::{json, terminal};
 use lancer_core::camera::Camera;
 use lancer_core::render::passes::{Pass, light_names, select};
-use lancer_core::render::{CancelToken, Control, Region, with_threads};
+use lancer_core::render::{CancelToken, Control, Region};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_io::Loaded;
@@ -32,9 +32,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// They do not; or the picture does not say how it was made, or the scene cannot be had or rendered.
 pub(crate) fn run(args: VerifyArgs) -> Result<(), Error> {
-    let threads = args.work.threads.map_or_else(all_cores, |threads| threads as usize);
-    let work = with_threads(threads, || verify(args));
-    work.map_err(|error| Error::Render(format!("cannot start {threads} threads: {error}")))?
+    on_threads(thread_count(args.work.threads), || verify(args))
 }
 
 fn verify(args: VerifyArgs) -> Result<(), Error> {
