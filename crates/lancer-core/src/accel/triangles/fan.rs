@@ -14,7 +14,7 @@ use super::lanes::{cross, dot, largest, load3, splat3, sub};
 use super::ray::{
     LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened,
 };
-use super::walk::{LeafVisitor, STACK, walk_from};
+use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
 use crate::accel::bvh::{Child, WIDTH, WideNode};
 use crate::accel::tally::Tally;
 use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
@@ -141,9 +141,9 @@ pub(super) fn occluded<S: Simd>(
 ) -> u64 {
     let fan = &Fan::new(receiver, directions, &tree.bounds);
     let mut open = wanted;
-    let mut stack = ArrayVec::<(Child, u64), STACK>::new();
-    stack.push((Child::inner(0), wanted));
-    while let Some((child, mask)) = stack.pop() {
+    let mut stack = ArrayVec::<Waiting, STACK>::new();
+    stack.push(Waiting { child: Child::inner(0), mask: wanted, distance: 0.0 });
+    while let Some(Waiting { child, mask, .. }) = stack.pop() {
         let mask = mask & open;
         if mask == 0 {
             continue;
@@ -192,9 +192,9 @@ pub(super) fn leaves<S: Simd>(
 ) {
     let fan = &Fan::new(receiver, directions, bounds);
     let mut open = wanted;
-    let mut stack = ArrayVec::<(Child, u64), STACK>::new();
-    stack.push((Child::inner(0), wanted));
-    while let Some((child, mask)) = stack.pop() {
+    let mut stack = ArrayVec::<Waiting, STACK>::new();
+    stack.push(Waiting { child: Child::inner(0), mask: wanted, distance: 0.0 });
+    while let Some(Waiting { child, mask, .. }) = stack.pop() {
         let mask = mask & open;
         if mask == 0 {
             continue;
@@ -208,6 +208,15 @@ pub(super) fn leaves<S: Simd>(
     }
 }
 
+/// What some directions may meet.
+struct Waiting {
+    child: Child,
+    mask: u64,
+    /// The square of its box's from the point. What is near hides what is far: on rough surfaces the order saves a
+    /// third of the time.
+    distance: f32,
+}
+
 /// Adds the children of a node that some directions may meet.
 #[inline(always)]
 fn node_of_fan<S: Simd>(
@@ -215,7 +224,7 @@ fn node_of_fan<S: Simd>(
     fan: &Fan,
     node: &WideNode,
     mask: u64,
-    stack: &mut ArrayVec<(Child, u64), STACK>,
+    stack: &mut ArrayVec<Waiting, STACK>,
 ) {
     let splat = |x: f32| f32x8::splat(simd, x);
     let zero = splat(0.0);
@@ -256,6 +265,8 @@ fn node_of_fan<S: Simd>(
     let counts = (elevation * (1.0 + 1e-5) - fan.lowest) * fan.per_step + 1.01;
     let counts: [i32; WIDTH] = counts.min(splat(FAN as f32)).max(zero).to_int::<i32x8<S>>().into();
     let around = around.to_bitmask() as u32;
+    let distance: [f32; WIDTH] = squared.into();
+    let waiting = stack.len();
     let low: [[f32; WIDTH]; 3] = [low[0].into(), low[1].into(), low[2].into()];
     let high: [[f32; WIDTH]; 3] = [high[0].into(), high[1].into(), high[2].into()];
     while met != 0 {
@@ -267,7 +278,9 @@ fn node_of_fan<S: Simd>(
             candidates = slab(simd, fan, corner(&low), corner(&high), candidates);
         }
         if candidates != 0 {
-            stack.push((node.children[child], candidates));
+            let distance = distance[child];
+            stack.push(Waiting { child: node.children[child], mask: candidates, distance });
+            nearest_last(&mut stack[waiting..], |child| child.distance);
         }
     }
 }

@@ -11,7 +11,7 @@ use super::block::{BLOCK, Block, TestRays, Verdict};
 use super::lanes::{load3, splat3};
 use super::ray::{Clipped, NarrowRay, UNIT_ROUNDOFF};
 use super::single::{self, Candidate, Candidates, add_leaf};
-use super::walk::{LeafVisitor, STACK, walk_from};
+use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
 use crate::accel::bits;
 use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
@@ -235,12 +235,7 @@ pub(crate) fn walk_packet<S: Simd, V: Visitor>(
             met &= met - 1;
             let child = nodes[node].children[place as usize];
             stack.push(Waiting { child, node: node as u32, place, enter: enter[place as usize] });
-            // The children of one node wait in order, the nearest last; there are few of them.
-            let mut at = stack.len() - 1;
-            while at > waiting && stack[at - 1].enter < stack[at].enter {
-                stack.swap(at - 1, at);
-                at -= 1;
-            }
+            nearest_last(&mut stack[waiting..], |child| child.enter);
         }
         loop {
             let Some(next) = stack.pop() else { return };

@@ -88,12 +88,7 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
                             std::mem::swap(&mut other, &mut next);
                         }
                         stack.push(other);
-                        // The children of one node wait in order, the nearest last; there are few of them.
-                        let mut place = stack.len() - 1;
-                        while place > waiting && stack[place - 1].1 < stack[place].1 {
-                            stack.swap(place - 1, place);
-                            place -= 1;
-                        }
+                        nearest_last(&mut stack[waiting..], |&(_, enter)| enter);
                     } else {
                         stack.push(other);
                     }
@@ -112,6 +107,17 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
                 Some(_) => {}
             }
         }
+    }
+}
+
+/// Gives the last of a node's children its place among those before it, which wait in order, the nearest last; there
+/// are few of them.
+#[inline(always)]
+pub(super) fn nearest_last<T>(waiting: &mut [T], distance: impl Fn(&T) -> f32) {
+    let mut place = waiting.len() - 1;
+    while place > 0 && distance(&waiting[place - 1]) < distance(&waiting[place]) {
+        waiting.swap(place - 1, place);
+        place -= 1;
     }
 }
 
