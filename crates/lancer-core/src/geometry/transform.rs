@@ -167,8 +167,10 @@ impl Placement {
     }
 
     /// The rays in the object's space, each as [`Placement::ray_to_object`] would carry it there.
+    #[inline(always)]
     pub fn rays_to_object(&self, rays: &RayPacket) -> RayPacket {
-        let mut local = rays.clone();
+        let zero = [[0.0; RayPacket::LANES]; 3];
+        let mut local = RayPacket { origin: zero, direction: zero, t_max: rays.t_max };
         for lane in 0..RayPacket::LANES {
             local.set(lane, &self.ray_to_object(&rays.ray(lane)));
         }

@@ -44,7 +44,7 @@ fn side_chord(ray: &Ray) -> Option<Chord> {
         return None;
     }
     let nearest = (o - d * (od / dd)).length_squared();
-    let [enter, exit] = unit_ball_chord(oo, od, dd, nearest)?;
+    let [enter, exit] = unit_ball_chord(oo, od, dd, nearest);
     let hit = |t| Hit { t, primitive: SIDE };
     Some(Chord { enter: hit(enter), exit: hit(exit) })
 }

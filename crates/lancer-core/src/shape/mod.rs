@@ -89,25 +89,28 @@ impl Chord {
     }
 }
 
+/// A hit with the only face of a shape at the t that its `nearest` found.
+fn hit_at(t: f64) -> Option<Hit> {
+    (t != f64::INFINITY).then_some(Hit { t, primitive: 0 })
+}
+
 /// The stretch of the line `o + t d` inside of the unit circle or sphere, for vectors of either dimension given
-/// by their scalar products: `oo` = o.o, `od` = o.d, `dd` = d.d, and `nearest` = |o + (-od/dd) d|^2.
+/// by their scalar products: `oo` = o.o, `od` = o.d, `dd` = d.d, and `nearest` = |o + (-od/dd) d|^2. Where it enters
+/// and where it leaves; NaN where it passes by. Without branches, so that vector code can be made of it.
 ///
 /// Source: Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection" (Ray Tracing
 /// Gems, 2019). The sign of o.o - 1 alone decides whether the ray starts inside.
-fn unit_ball_chord(oo: f64, od: f64, dd: f64, nearest: f64) -> Option<[f64; 2]> {
+#[inline(always)]
+fn unit_ball_chord(oo: f64, od: f64, dd: f64, nearest: f64) -> [f64; 2] {
     let outside = oo - 1.0;
     // From inside the line always leaves; the bound keeps that true under rounding.
     let half_chord_squared = (1.0 - nearest).max(-outside);
-    if half_chord_squared < 0.0 {
-        return None;
-    }
-    let root = (dd * half_chord_squared).sqrt();
+    let passes = half_chord_squared < 0.0;
+    let root = if passes { f64::NAN } else { (dd * half_chord_squared).sqrt() };
     let q = if od < 0.0 { root - od } else { -od - root };
-    if q == 0.0 {
-        return None;
-    }
+    let q = if q == 0.0 { f64::NAN } else { q };
     let (a, b) = (outside / q, q / dd);
-    Some(if a < b { [a, b] } else { [b, a] })
+    if a < b { [a, b] } else { [b, a] }
 }
 
 /// Relative error of a coordinate that was put back onto a unit sphere or circle, as a number of roundings;

@@ -1,6 +1,6 @@
 //! y = 0, unbounded, with the normal +Y.
 
-use super::{Hit, SurfacePoint};
+use super::{Hit, SurfacePoint, hit_at};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
@@ -13,8 +13,15 @@ pub fn bounds() -> Bounds {
 ///
 /// A ray along the plane does not meet it, even from within.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
+    hit_at(nearest(ray))
+}
+
+/// The t of that hit, infinite where there is none; without branches.
+#[inline(always)]
+pub(crate) fn nearest(ray: &Ray) -> f64 {
     let t = -ray.origin.y / ray.direction.y;
-    (t > 0.0 && t < ray.t_max).then_some(Hit { t, primitive: 0 })
+    let counts = (t > 0.0) & (t < ray.t_max);
+    if counts { t } else { f64::INFINITY }
 }
 
 /// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).

@@ -3,11 +3,11 @@
 use super::geometry::{Geometry, TriangleIndex};
 use super::{Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
+use crate::accel::triangles::{DONE, Lane, NarrowPacket, TriangleTree, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
-use crate::geometry::RayPacket;
-use crate::shape::{self, sphere};
-use fearless_simd::dispatch;
+use crate::geometry::{Placement, Ray, RayPacket};
+use crate::shape::{self, plane, sphere};
+use fearless_simd::{Level, dispatch};
 use std::hint::black_box;
 
 const LANES: usize = RayPacket::LANES;
@@ -17,20 +17,19 @@ impl World {
     /// faster where the rays go much the same way.
     pub fn intersect_packet(&self, rays: &RayPacket, wanted: u32) -> [Option<Hit>; LANES] {
         let mut best: [Option<Hit>; LANES] = [None; LANES];
-        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, t_max| {
-            let mut local = object.placement.rays_to_object(rays);
-            for (t_max, best) in local.t_max.iter_mut().zip(&best) {
-                // A hit at the same t is looked at too: the lower object is to win.
-                *t_max = best.map_or(*t_max, |hit| hit.t.next_up());
-            }
-            let hits = object.geometry.intersect_packet(&local, lanes, self);
+        // A hit at the same t is looked at too: the lower object is to win.
+        let mut up_to = rays.t_max;
+        let visited = self.visit_objects_of_packet(rays, wanted, |level, id, object, lanes, t_max| {
+            let hits = object.intersect_packet(level, rays, &up_to, lanes, self);
             for lane in bits(lanes) {
                 let Some(shape::Hit { t, primitive }) = hits[lane] else { continue };
                 if best[lane].is_none_or(|best| (t, id) < (best.t, best.object)) {
                     best[lane] = Some(Hit { t, object: id, primitive });
                     t_max[lane] = t;
+                    up_to[lane] = t.next_up();
                 }
             }
+            0
         });
         for lane in bits(wanted & !visited) {
             best[lane] = self.intersect(&rays.ray(lane));
@@ -51,13 +50,10 @@ impl World {
     /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells.
     pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32) -> u32 {
         let mut occluded = 0;
-        let visited = self.visit_objects_of_packet(rays, wanted, |_, object, lanes, t_max| {
-            let local = object.placement.rays_to_object(rays);
-            let hit = object.geometry.occluded_packet(&local, lanes, self);
+        let visited = self.visit_objects_of_packet(rays, wanted, |level, _, object, lanes, _| {
+            let hit = object.occluded_packet(level, rays, lanes, self);
             occluded |= hit;
-            for lane in bits(hit) {
-                t_max[lane] = f64::NEG_INFINITY;
-            }
+            hit
         });
         for lane in bits(wanted & !visited) {
             occluded |= u32::from(self.occluded(&rays.ray(lane))) << lane;
@@ -66,22 +62,19 @@ impl World {
     }
 
     /// Calls `visit` with the objects that some of the rays `wanted` may meet, and with which. It may lower the t up
-    /// to which a ray's hits still count, to `f64::NEG_INFINITY` to end it. Returns the rays that it was done for:
-    /// the others are to be traced one by one.
+    /// to which a ray's hits still count, and returns the rays that are done with. Returns the rays that it was called
+    /// for: the others are to be traced one by one.
     fn visit_objects_of_packet(
         &self,
         rays: &RayPacket,
         wanted: u32,
-        mut visit: impl FnMut(ObjectId, &Object, u32, &mut [f64; LANES]),
+        mut visit: impl FnMut(Level, ObjectId, &Object, u32, &mut [f64; LANES]) -> u32,
     ) -> u32 {
         let ObjectIndex::Bvh { tree, level } = &self.index else { return 0 };
         let mut t_max = rays.t_max;
         let mut open = wanted;
         let mut visit = |id: ObjectId, lanes: u32, t_max: &mut [f64; LANES]| {
-            visit(id, self.object(id), lanes, t_max);
-            for lane in bits(lanes) {
-                open &= !(u32::from(t_max[lane] == f64::NEG_INFINITY) << lane);
-            }
+            open &= !visit(*level, id, self.object(id), lanes, t_max);
             open
         };
         let mut left = wanted;
@@ -105,6 +98,7 @@ impl World {
                 for &candidate in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
                     lanes &= visit(objects[candidate as usize], lanes, t_max);
                 }
+                lanes
             }, t_max };
             while let Some((group, backward)) = packet.octant(&mut open) {
                 let mut end = packet.ends_of(group);
@@ -115,57 +109,111 @@ impl World {
     }
 }
 
-/// Shows the leaves of the tree over the objects to a closure.
+/// Shows the leaves of the tree over the objects to a closure, which returns the rays that still want anything.
 struct Leaves<'a, F> {
     packet: &'a NarrowPacket,
     visit: F,
     t_max: [f64; LANES],
 }
 
-impl<F: FnMut(Child, u32, &mut [f64; LANES])> Visitor for Leaves<'_, F> {
+impl<F: FnMut(Child, u32, &mut [f64; LANES]) -> u32> Visitor for Leaves<'_, F> {
     /// What a ray alone costs is spent in the objects.
     const ALONE: u32 = 0;
 
     #[inline(always)]
     fn visit(&mut self, leaf: Child, lanes: u32, end: &mut Lane) {
-        (self.visit)(leaf, lanes, &mut self.t_max);
+        let open = (self.visit)(leaf, lanes, &mut self.t_max);
         for lane in bits(lanes) {
-            let over = self.t_max[lane] == f64::NEG_INFINITY;
-            end[lane] = if over { DONE } else { self.packet.up_to(lane, self.t_max[lane]) };
+            let wanted = open >> lane & 1 == 1;
+            end[lane] = if wanted { self.packet.up_to(lane, self.t_max[lane]) } else { DONE };
         }
     }
 }
 
-impl Geometry {
-    fn intersect_packet(self, rays: &RayPacket, wanted: u32, world: &World) -> [Option<shape::Hit>; LANES] {
-        if let Self::Mesh(mesh) = self
-            && let TriangleIndex::Bvh(tree) = &world.meshes[mesh as usize].index
-        {
-            return tree.intersect_packet(rays, wanted);
-        }
+impl Object {
+    /// The nearest hits of the rays `wanted`, each with t in (0, `up_to`).
+    fn intersect_packet(
+        &self,
+        level: Level,
+        rays: &RayPacket,
+        up_to: &[f64; LANES],
+        wanted: u32,
+        world: &World,
+    ) -> [Option<shape::Hit>; LANES] {
         let mut hits = [None; LANES];
-        for lane in bits(wanted & self.may_meet(rays)) {
-            hits[lane] = self.intersect(&rays.ray(lane), &world.meshes, &Uncounted);
+        if let Some(nearest) = self.nearest_on_one_face(level, rays, up_to) {
+            for lane in bits(wanted) {
+                let t = nearest[lane];
+                hits[lane] = (t < f64::INFINITY).then_some(shape::Hit { t, primitive: 0 });
+            }
+            return hits;
+        }
+        let local = RayPacket { t_max: *up_to, ..self.rays_to_object(level, rays) };
+        if let Some(tree) = self.triangles(world) {
+            return tree.intersect_packet(&local, wanted);
+        }
+        for lane in bits(wanted) {
+            hits[lane] = self.geometry.intersect(&local.ray(lane), &world.meshes, &Uncounted);
         }
         hits
     }
 
-    /// The rays that a quick look at all of them together does not rule out.
-    fn may_meet(self, rays: &RayPacket) -> u32 {
-        match self {
-            Self::Sphere => sphere::may_meet(rays),
-            _ => u32::MAX,
+    /// Which of the rays `wanted` it stops.
+    fn occluded_packet(&self, level: Level, rays: &RayPacket, wanted: u32, world: &World) -> u32 {
+        if let Some(nearest) = self.nearest_on_one_face(level, rays, &rays.t_max) {
+            return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest[lane] < f64::INFINITY) << lane)
+                & wanted;
+        }
+        let local = self.rays_to_object(level, rays);
+        if let Some(tree) = self.triangles(world) {
+            return tree.occluded_packet(&local, wanted);
+        }
+        bits(wanted)
+            .filter(|&lane| self.geometry.occluded(&local.ray(lane), &world.meshes, &Uncounted))
+            .fold(0, |hit, lane| hit | 1 << lane)
+    }
+
+    fn triangles<'w>(&self, world: &'w World) -> Option<&'w TriangleTree> {
+        match &world.meshes[self.geometry.mesh_index()?].index {
+            TriangleIndex::Bvh(tree) => Some(tree),
+            TriangleIndex::Kd(_) | TriangleIndex::None => None,
         }
     }
 
-    fn occluded_packet(self, rays: &RayPacket, wanted: u32, world: &World) -> u32 {
-        if let Self::Mesh(mesh) = self
-            && let TriangleIndex::Bvh(tree) = &world.meshes[mesh as usize].index
-        {
-            return tree.occluded_packet(rays, wanted);
-        }
-        bits(wanted & self.may_meet(rays))
-            .filter(|&lane| self.occluded(&rays.ray(lane), &world.meshes, &Uncounted))
-            .fold(0, |hit, lane| hit | 1 << lane)
+    fn rays_to_object(&self, level: Level, rays: &RayPacket) -> RayPacket {
+        dispatch!(level, _simd => self.placement.rays_to_object(rays))
     }
+
+    /// Of a shape that is one face: the t at which each ray meets it first, infinite where that is not before `up_to`.
+    fn nearest_on_one_face(
+        &self,
+        level: Level,
+        rays: &RayPacket,
+        up_to: &[f64; LANES],
+    ) -> Option<[f64; LANES]> {
+        match self.geometry {
+            Geometry::Sphere => {
+                Some(dispatch!(level, _simd => nearest(&self.placement, rays, up_to, sphere::nearest)))
+            }
+            Geometry::Plane => {
+                Some(dispatch!(level, _simd => nearest(&self.placement, rays, up_to, plane::nearest)))
+            }
+            Geometry::Cube | Geometry::Cylinder { .. } | Geometry::Mesh(_) => None,
+        }
+    }
+}
+
+/// What `of_shape` finds for each ray, with t below `up_to`: the scalar function, of which the compiler makes vector code.
+#[inline(always)]
+fn nearest(
+    placement: &Placement,
+    rays: &RayPacket,
+    up_to: &[f64; LANES],
+    of_shape: impl Fn(&Ray) -> f64,
+) -> [f64; LANES] {
+    let mut nearest = [f64::INFINITY; LANES];
+    for lane in 0..LANES {
+        nearest[lane] = of_shape(&Ray { t_max: up_to[lane], ..placement.ray_to_object(&rays.ray(lane)) });
+    }
+    nearest
 }
