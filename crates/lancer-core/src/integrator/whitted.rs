@@ -40,10 +40,11 @@ pub struct Scratch {
 
 const LANES: usize = RayPacket::LANES;
 
-/// What the lights do at the surfaces that rays have met: for each surface in turn, by light.
+/// What the lights do at the surfaces that rays have met.
 #[derive(Clone, Debug, Default)]
 struct Lighting {
-    terms: Vec<Option<LightTerm>>,
+    /// For each surface in turn, by light: its term where nothing hides it, black where it has none.
+    radiances: Vec<Rgb>,
     /// For each light the surfaces that it reaches, a bit for each.
     visible: Vec<u32>,
 }
@@ -344,9 +345,11 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn find_lighting(&mut self, arrivals: &[Arrival]) {
         let integrator = self.integrator;
         let lights = integrator.world.lights();
-        self.lighting.terms.clear();
+        self.lighting.radiances.clear();
         for arrival in arrivals {
-            self.lighting.terms.extend(lights.iter().map(|light| LightTerm::new(&arrival.point, light)));
+            self.lighting.radiances.extend(lights.iter().map(|light| {
+                LightTerm::new(&arrival.point, light).map_or(Rgb::BLACK, |term| term.radiance())
+            }));
         }
         self.lighting.visible.clear();
         self.lighting.visible.resize(lights.len(), u32::MAX);
@@ -357,7 +360,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         for (place, light) in lights.iter().enumerate() {
             let mut wanted = 0;
             for (index, arrival) in arrivals.iter().enumerate() {
-                if self.lighting.terms[index * lights.len() + place].is_some() {
+                if !self.lighting.radiances[index * lights.len() + place].is_black() {
                     segments.set(index, &arrival.at.segment_to(light.position));
                     wanted |= 1 << index;
                 }
@@ -370,19 +373,22 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     /// The sum over the lights, in their order.
     fn lights(&mut self, index: usize, arrival: &Arrival) -> Rgb {
         let lights = self.integrator.world.lights();
-        let terms = &self.lighting.terms[index * lights.len()..];
-        let mut radiance = Rgb::BLACK;
-        for (place, ((light, term), visible)) in
-            lights.iter().zip(terms).zip(&self.lighting.visible).enumerate()
+        let radiances = &self.lighting.radiances[index * lights.len()..];
+        let mut sum = Rgb::BLACK;
+        for (place, ((light, radiance), visible)) in
+            lights.iter().zip(radiances).zip(&self.lighting.visible).enumerate()
         {
-            let Some(term) = term else { continue };
             let visible = visible >> index & 1 == 1;
-            self.listeners[arrival.lane].light(place, light, term, visible);
+            if L::HEARS_LIGHTS
+                && let Some(term) = LightTerm::new(&arrival.point, light)
+            {
+                self.listeners[arrival.lane].light(place, light, &term, visible);
+            }
             if visible {
-                radiance += term.radiance();
+                sum += *radiance;
             }
         }
-        radiance
+        sum
     }
 
     /// Queues L_r and L_t where they are wanted and their coefficients are not zero.

@@ -50,6 +50,7 @@ pub struct LightTerm {
 impl LightTerm {
     /// The term of a light that nothing hides; none where the surface faces away from it, or where it adds
     /// nothing.
+    #[inline(always)]
     pub fn new(point: &ShadingPoint, light: &Light) -> Option<Self> {
         let to_light = light.position - point.position;
         let distance = to_light.length();
