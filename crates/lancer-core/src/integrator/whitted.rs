@@ -347,9 +347,8 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         let lights = integrator.world.lights();
         self.lighting.radiances.clear();
         for arrival in arrivals {
-            self.lighting.radiances.extend(lights.iter().map(|light| {
-                LightTerm::new(&arrival.point, light).map_or(Rgb::BLACK, |term| term.radiance())
-            }));
+            let radiances = lights.iter().map(|light| LightTerm::radiance_at(&arrival.point, light));
+            self.lighting.radiances.extend(radiances);
         }
         self.lighting.visible.clear();
         self.lighting.visible.resize(lights.len(), u32::MAX);

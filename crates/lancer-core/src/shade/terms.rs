@@ -50,8 +50,18 @@ pub struct LightTerm {
 impl LightTerm {
     /// The term of a light that nothing hides; none where the surface faces away from it, or where it adds
     /// nothing.
-    #[inline(always)]
     pub fn new(point: &ShadingPoint, light: &Light) -> Option<Self> {
+        Self::find::<true>(point, light)
+    }
+
+    /// The value of that term; black where there is none.
+    pub fn radiance_at(point: &ShadingPoint, light: &Light) -> Rgb {
+        Self::find::<false>(point, light).map_or(Rgb::BLACK, |term| term.radiance())
+    }
+
+    /// With `EXPLAIN` all factors are found, else those that the value depends on.
+    #[inline(always)]
+    fn find<const EXPLAIN: bool>(point: &ShadingPoint, light: &Light) -> Option<Self> {
         let to_light = light.position - point.position;
         let distance = to_light.length();
         let direction = to_light / distance;
@@ -63,16 +73,21 @@ impl LightTerm {
         }
         let material = point.material;
         let irradiance = light.intensity * (1.0 / (PI * distance * distance));
-        let half = (direction + point.to_eye).normalize_or_zero();
-        let half_cosine = point.normal.dot(half).max(0.0);
+        let shines = !material.specular.is_black();
+        let half_cosine = if shines || EXPLAIN {
+            let half = (direction + point.to_eye).normalize_or_zero();
+            point.normal.dot(half).max(0.0)
+        } else {
+            0.0
+        };
         let normalization = specular_normalization(material.shininess);
         let diffuse = irradiance * material.diffuse * point.color * cosine;
-        let specular = if material.specular.is_black() {
-            Rgb::BLACK
-        } else {
+        let specular = if shines {
             let tint = material.metallic * point.color + material.metallic.map(|m| 1.0 - m);
             let lobe = normalization * portable::pow(half_cosine, material.shininess);
             irradiance * material.specular * tint * lobe
+        } else {
+            Rgb::BLACK
         };
         let term =
             Self { distance, direction, irradiance, cosine, half_cosine, normalization, diffuse, specular };
