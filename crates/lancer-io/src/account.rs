@@ -1,8 +1,10 @@
-//! What has been read for one scene, and what its textures hold: many small files are bounded together.
+//! What has been read for one scene: its textures, each decoded once, and sums, by which many small files are bounded
+//! together.
 
-use std::collections::HashSet;
-use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use lancer_core::scene::ImageTexture;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// How many pixels textures may hold for each byte of the scene's files, all together. A photograph's byte stands for up to
 /// ten pixels, a flat image's for hundreds, as a bomb's does. Untuned.
@@ -13,36 +15,48 @@ const BYTES_PER_PIXEL: u64 = 3;
 
 /// Shared by a resolver and its copies.
 #[derive(Debug, Default)]
-pub(crate) struct Account(Mutex<Sums>);
+pub(crate) struct Account(Mutex<Books>);
 
 #[derive(Debug, Default)]
-struct Sums {
+struct Books {
     /// Files that were read, each counted once whatever it was called.
     files: HashSet<PathBuf>,
     /// Their bytes.
     read: u64,
     /// Bytes that textures hold.
     held: u64,
+    /// Textures by their files.
+    textures: HashMap<PathBuf, Arc<ImageTexture>>,
 }
 
 impl Account {
     /// Counts a file that was read.
     pub(crate) fn read(&self, file: PathBuf, bytes: u64) {
-        let mut sums = self.sums();
-        if sums.files.insert(file) {
-            sums.read = sums.read.saturating_add(bytes);
+        let mut books = self.books();
+        if books.files.insert(file) {
+            books.read = books.read.saturating_add(bytes);
         }
     }
 
     /// Counts bytes that a texture holds.
     pub(crate) fn hold(&self, bytes: u64) {
-        let mut sums = self.sums();
-        sums.held = sums.held.saturating_add(bytes);
+        let mut books = self.books();
+        books.held = books.held.saturating_add(bytes);
+    }
+
+    /// The texture of a file, if it was kept.
+    pub(crate) fn texture(&self, file: &Path) -> Option<Arc<ImageTexture>> {
+        self.books().textures.get(file).cloned()
+    }
+
+    /// Keeps the texture of a file for the next who wants it.
+    pub(crate) fn keep(&self, file: PathBuf, texture: &Arc<ImageTexture>) {
+        self.books().textures.insert(file, Arc::clone(texture));
     }
 
     /// What is wrong with decoding `bytes` more of textures, of which one may have `most_pixels`.
     pub(crate) fn excess(&self, bytes: u64, most_pixels: u64) -> Option<String> {
-        let Sums { read, held, .. } = *self.sums();
+        let Books { read, held, .. } = *self.books();
         let pixels = most_pixels.max(read.saturating_mul(PIXELS_PER_BYTE));
         let most = pixels.saturating_mul(BYTES_PER_PIXEL);
         let needed = held.saturating_add(bytes);
@@ -51,7 +65,7 @@ impl Account {
         })
     }
 
-    fn sums(&self) -> MutexGuard<'_, Sums> {
+    fn books(&self) -> MutexGuard<'_, Books> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -13,7 +13,8 @@ use lancer_io::resolver::Resolver;
 use proptest::prelude::*;
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -196,13 +197,31 @@ fn a_tiff_whose_fields_are_longer_than_it_is_refused() {
     );
 }
 
+fn black_png(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    let pixels = vec![0; 3 * width as usize * height as usize];
+    encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
+    bytes
+}
+
+#[test]
+fn a_file_is_one_texture_by_all_of_its_names() {
+    let directory = TempDir::new().unwrap();
+    let below = directory.path().join("below");
+    fs::create_dir(&below).unwrap();
+    fs::write(directory.path().join("a.png"), black_png(2, 3)).unwrap();
+    let resolver = Resolver::for_file(&directory.path().join("scene.yaml"), false, Limits::default());
+    let named = |path: PathBuf| load_texture(&path, &resolver.clone()).unwrap();
+    let (plain, around) = (named(directory.path().join("a.png")), named(below.join("../a.png")));
+    assert!(Arc::ptr_eq(&plain, &around));
+}
+
 #[test]
 fn textures_of_a_scene_are_bounded_together() {
     let directory = TempDir::new().unwrap();
-    let mut flat = Vec::new();
-    let mut encoder = png::Encoder::new(&mut flat, 1000, 1000);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header().unwrap().write_image_data(&[0; 3_000_000]).unwrap();
+    let flat = black_png(1000, 1000);
     for name in ["a.png", "b.png"] {
         fs::write(directory.path().join(name), &flat).unwrap();
     }

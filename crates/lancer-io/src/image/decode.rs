@@ -24,13 +24,20 @@ const BYTES_PER_PIXEL: u64 = 8;
 /// What a decoder may hold beyond the pixels: tables, text chunks and colour profiles.
 const DECODER_OVERHEAD: u64 = 16 << 20;
 
-/// Reads a texture: PNG, JPEG, WebP, TIFF, BMP or TGA, told apart by content and, for TGA, by extension.
+/// Reads a texture: PNG, JPEG, WebP, TIFF, BMP or TGA, told apart by content and, for TGA, by extension. A file is read
+/// once for a resolver and its copies, whatever names it has.
 ///
 /// # Errors
 /// The file cannot be read, is of another format, is broken, or has more pixels than
 /// [`Limits::texture_pixels`](crate::limits::Limits::texture_pixels) allows, alone or with the textures before it.
 pub fn load_texture(path: &Path, resolver: &Resolver) -> Result<Arc<ImageTexture>, LoadError> {
-    texture_of_bytes(path, &resolver.read(path)?, resolver)
+    let file = resolver.identity(path);
+    if let Some(known) = resolver.account().texture(&file) {
+        return Ok(known);
+    }
+    let texture = texture_of_bytes(path, &resolver.read(path)?, resolver)?;
+    resolver.account().keep(file, &texture);
+    Ok(texture)
 }
 
 /// As [`load_texture`], from bytes that are part of another file; `path` is what messages call them.

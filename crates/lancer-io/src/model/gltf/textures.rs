@@ -8,7 +8,7 @@ use crate::image::{load_texture, texture_of_bytes};
 use crate::resolver::Resolver;
 use lancer_core::scene::ImageTexture;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The textures of a document.
@@ -19,8 +19,6 @@ pub(super) struct Textures<'a> {
     resolver: &'a Resolver,
     /// By image; `None` for one that could not be had and has been told.
     loaded: HashMap<usize, Option<Arc<ImageTexture>>>,
-    /// Those of files, which several images may name.
-    files: HashMap<PathBuf, Arc<ImageTexture>>,
 }
 
 impl<'a> Textures<'a> {
@@ -30,7 +28,7 @@ impl<'a> Textures<'a> {
         buffers: &'a Buffers<'a>,
         resolver: &'a Resolver,
     ) -> Self {
-        Self { path, document, buffers, resolver, loaded: HashMap::new(), files: HashMap::new() }
+        Self { path, document, buffers, resolver, loaded: HashMap::new() }
     }
 
     /// The image of a texture. One that cannot be had is a warning; an index that leads nowhere is an error.
@@ -81,13 +79,7 @@ impl<'a> Textures<'a> {
             }
             (Some(uri), _) => {
                 let file = self.buffers.file(uri, &format!("{here}/uri"))?;
-                let identity = self.resolver.identity(&file);
-                if let Some(known) = self.files.get(&identity) {
-                    return Ok(Arc::clone(known));
-                }
-                let read = load_texture(&file, self.resolver).map_err(broken)?;
-                self.files.insert(identity, Arc::clone(&read));
-                Ok(read)
+                load_texture(&file, self.resolver).map_err(broken)
             }
             (None, Some(view)) => {
                 let view = self.buffers.view(view, &format!("{here}/bufferView"))?;

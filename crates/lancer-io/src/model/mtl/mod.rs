@@ -143,16 +143,16 @@ impl Libraries {
     }
 }
 
-/// The textures of one model, each file read once.
+/// The textures of one model.
 struct Textures<'a> {
     resolver: &'a Resolver,
-    /// By path; `None` for one that could not be had and has been told.
-    loaded: HashMap<PathBuf, Option<Arc<ImageTexture>>>,
+    /// Files that could not be had, which is told once, however many materials name them.
+    refused: HashSet<PathBuf>,
 }
 
 impl<'a> Textures<'a> {
     fn new(resolver: &'a Resolver) -> Self {
-        Self { resolver, loaded: HashMap::new() }
+        Self { resolver, refused: HashSet::new() }
     }
 
     /// The image that the library at `library` names.
@@ -165,27 +165,22 @@ impl<'a> Textures<'a> {
         let path = match self.resolve(library, name) {
             Ok(path) => path,
             Err(message) => {
-                // Told once, however many materials share the name.
-                let unresolved = library.join(name);
-                if self.loaded.insert(unresolved, None).is_none() {
+                if self.refused.insert(library.join(name)) {
                     warnings.push(Diagnostic::new(library, format!("texture: {message}")));
                 }
                 return None;
             }
         };
-        let identity = self.resolver.identity(&path);
-        if let Some(image) = self.loaded.get(&identity) {
-            return image.clone();
+        let file = self.resolver.identity(&path);
+        if self.refused.contains(&file) {
+            return None;
         }
-        let image = match load_texture(&path, self.resolver) {
-            Ok(image) => Some(image),
-            Err(error) => {
+        load_texture(&path, self.resolver)
+            .map_err(|error| {
                 warnings.extend(error.diagnostics);
-                None
-            }
-        };
-        self.loaded.insert(identity, image.clone());
-        image
+                self.refused.insert(file);
+            })
+            .ok()
     }
 
     /// The file that a library means. A full path was right on its author's machine only, so if it cannot be
