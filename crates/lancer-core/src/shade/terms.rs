@@ -62,6 +62,11 @@ impl LightTerm {
     /// With `EXPLAIN` all factors are found, else those that the value depends on.
     #[inline(always)]
     fn find<const EXPLAIN: bool>(point: &ShadingPoint, light: &Light) -> Option<Self> {
+        let material = point.material;
+        let shines = !material.specular.is_black();
+        if !shines && material.diffuse.is_black() {
+            return None;
+        }
         let to_light = light.position - point.position;
         let distance = to_light.length();
         let direction = to_light / distance;
@@ -71,9 +76,7 @@ impl LightTerm {
         if !faces_the_light || light.intensity.is_black() {
             return None;
         }
-        let material = point.material;
         let irradiance = light.intensity * (1.0 / (PI * distance * distance));
-        let shines = !material.specular.is_black();
         let half_cosine = if shines || EXPLAIN {
             let half = (direction + point.to_eye).normalize_or_zero();
             point.normal.dot(half).max(0.0)
