@@ -1,6 +1,5 @@
 //! Many short rays from one point.
 
-use super::geometry::{Geometry, TriangleIndex};
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Receiver, visit_fan};
@@ -75,8 +74,7 @@ impl World {
         }
         let object = self.object(id);
         if wanted.count_ones() > ALONE
-            && let Geometry::Mesh(mesh) = object.geometry
-            && let TriangleIndex::Bvh(tree) = &self.meshes[mesh as usize].index
+            && let Some(tree) = object.geometry.triangle_tree(&self.meshes)
             && let Some(receiver) = rays.receiver(id, object)
         {
             let decide = |i: usize, triangle: &[[f32; 3]; 3]| {

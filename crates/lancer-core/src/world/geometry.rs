@@ -53,6 +53,14 @@ impl Geometry {
         }
     }
 
+    /// The tree that packets and fans search, if it is a mesh that has one.
+    pub(super) fn triangle_tree(self, meshes: &[Arc<PreparedMesh>]) -> Option<&TriangleTree> {
+        match &meshes[self.mesh_index()?].index {
+            TriangleIndex::Bvh(tree) => Some(tree),
+            TriangleIndex::Kd(_) | TriangleIndex::None => None,
+        }
+    }
+
     pub(super) fn bounds(self, meshes: &[Arc<PreparedMesh>]) -> Bounds {
         match self {
             Self::Sphere => sphere::bounds(),

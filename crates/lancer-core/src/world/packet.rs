@@ -1,9 +1,9 @@
 //! Rays that are traced together.
 
-use super::geometry::{Geometry, TriangleIndex};
+use super::geometry::Geometry;
 use super::{Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{DONE, Lane, NarrowPacket, TriangleTree, Visitor, walk_packet};
+use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
 use crate::geometry::{Placement, Ray, RayPacket};
 use crate::shape::{self, plane, sphere};
@@ -149,7 +149,7 @@ impl Object {
             return hits;
         }
         let local = RayPacket { t_max: *up_to, ..self.rays_to_object(level, rays) };
-        if let Some(tree) = self.triangles(world) {
+        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             return tree.intersect_packet(&local, wanted);
         }
         for lane in bits(wanted) {
@@ -165,19 +165,12 @@ impl Object {
                 & wanted;
         }
         let local = self.rays_to_object(level, rays);
-        if let Some(tree) = self.triangles(world) {
+        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             return tree.occluded_packet(&local, wanted);
         }
         bits(wanted)
             .filter(|&lane| self.geometry.occluded(&local.ray(lane), &world.meshes, &Uncounted))
             .fold(0, |hit, lane| hit | 1 << lane)
-    }
-
-    fn triangles<'w>(&self, world: &'w World) -> Option<&'w TriangleTree> {
-        match &world.meshes[self.geometry.mesh_index()?].index {
-            TriangleIndex::Bvh(tree) => Some(tree),
-            TriangleIndex::Kd(_) | TriangleIndex::None => None,
-        }
     }
 
     fn rays_to_object(&self, level: Level, rays: &RayPacket) -> RayPacket {
