@@ -90,7 +90,7 @@ impl Chord {
 }
 
 /// A hit with the only face of a shape at the t that its `nearest` found.
-fn hit_at(t: f64) -> Option<Hit> {
+pub(crate) fn hit_at(t: f64) -> Option<Hit> {
     (t != f64::INFINITY).then_some(Hit { t, primitive: 0 })
 }
 

@@ -143,8 +143,7 @@ impl Object {
         let mut hits = [None; LANES];
         if let Some(nearest) = self.nearest_on_one_face(level, rays, up_to) {
             for lane in bits(wanted) {
-                let t = nearest[lane];
-                hits[lane] = (t < f64::INFINITY).then_some(shape::Hit { t, primitive: 0 });
+                hits[lane] = shape::hit_at(nearest[lane]);
             }
             return hits;
         }
