@@ -1,11 +1,15 @@
 //! Packed models.
 
 use crate::common::{Files, error_of, load, mutated, mutations, warnings_of};
+use crate::mtl::blue_bmp;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use lancer_core::Rgb;
+use lancer_core::geometry::DVec2;
 use lancer_core::scene::Texture;
 use lancer_io::limits::Limits;
+use lancer_io::model::ModelOptions;
+use lancer_io::resolver::Resolver;
 use proptest::prelude::*;
 use std::io::{Cursor, Write};
 use zip::ZipWriter;
@@ -85,6 +89,25 @@ fn the_model_of_an_archive_finds_its_files_in_it() {
         error_of(load("a.zip", zip(&[("b/a.obj", b"f 1 2 3")]))),
         "a.zip/b/a.obj:1:3: vertex 1 is used, but there are none"
     );
+}
+
+#[test]
+fn textures_of_one_name_in_two_archives_of_a_scene_are_two() {
+    let blue = blue_bmp();
+    let mut red = blue.clone();
+    red[54..57].copy_from_slice(&[0, 0, 255]);
+    let archive = |texture: &[u8]| {
+        let mtl = b"newmtl red\nmap_Kd t.bmp\n";
+        zip(&[("a.obj", OBJ.as_bytes()), ("parts/a.mtl", mtl), ("parts/t.bmp", texture)])
+    };
+    let files = Files::new().with("blue.zip", archive(&blue)).with("red.zip", archive(&red));
+    let resolver = Resolver::for_file(&files.path("blue.zip"), false, Limits::default());
+    let color = |name: &str| {
+        let model = lancer_io::model::load(&files.path(name), &resolver, &ModelOptions::default()).unwrap();
+        model.materials[0].color.color_at(DVec2::ZERO)
+    };
+    assert_eq!(color("blue.zip"), Rgb::new(0.0, 0.0, 1.0));
+    assert_eq!(color("red.zip"), Rgb::new(1.0, 0.0, 0.0));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::fs;
 use std::sync::Arc;
 
 /// A 24-bit BMP of one blue pixel.
-fn blue_bmp() -> Vec<u8> {
+pub(crate) fn blue_bmp() -> Vec<u8> {
     let mut bytes = b"BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\x18\0".to_vec();
     bytes.extend([0; 24]);
     bytes.extend([255, 0, 0, 0]);
