@@ -30,7 +30,7 @@ pub(super) fn intersect_packets(world: &World, packets: &[(RayPacket, u32)], hit
 pub(super) fn occluded_packets(world: &World, packets: &[(RayPacket, u32)], blocked: &mut Vec<bool>) {
     blocked.clear();
     for (rays, wanted) in packets {
-        let occluded = world.occluded_packet(rays, *wanted);
+        let occluded = world.occluded_packet(rays, *wanted, &[None; RayPacket::LANES]);
         let lanes = (0..RayPacket::LANES).filter(|lane| wanted >> lane & 1 == 1);
         blocked.extend(lanes.map(|lane| occluded >> lane & 1 == 1));
     }

@@ -14,7 +14,7 @@ use crate::geometry::{DVec3, Ray, RayPacket};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Hit, Intersection, Media, Touching, World};
+use crate::world::{Face, Hit, Intersection, Media, Touching, World};
 use arrayvec::ArrayVec;
 use std::collections::VecDeque;
 
@@ -190,10 +190,16 @@ impl<'w> Whitted<'w> {
         hits
     }
 
-    /// Which of the rays `wanted` meet anything.
-    fn occluded(&self, rays: &RayPacket, wanted: u32, tally: &impl Tally) -> u32 {
+    /// Which of the rays `wanted` meet anything; see [`World::occluded_packet`].
+    fn occluded(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        left: &[Option<Face>; LANES],
+        tally: &impl Tally,
+    ) -> u32 {
         if wanted.count_ones() >= WORTH_A_PACKET {
-            return self.world.occluded_packet(rays, wanted);
+            return self.world.occluded_packet(rays, wanted, left);
         }
         bits(wanted)
             .filter(|&lane| self.world.occluded_tallied(&rays.ray(lane), tally))
@@ -358,14 +364,16 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         let mut segments = RayPacket::splat(&arrivals[0].ray);
         for (place, light) in lights.iter().enumerate() {
             let mut wanted = 0;
+            let mut left = [None; LANES];
             for (index, arrival) in arrivals.iter().enumerate() {
                 if !self.lighting.radiances[index * lights.len() + place].is_black() {
                     segments.set(index, &arrival.at.segment_to(light.position));
+                    left[index] = arrival.at.face_left_for(light.position);
                     wanted |= 1 << index;
                 }
             }
             self.counts.shadow += u64::from(u32::count_ones(wanted));
-            self.lighting.visible[place] = !integrator.occluded(&segments, wanted, self.tally);
+            self.lighting.visible[place] = !integrator.occluded(&segments, wanted, &left, self.tally);
         }
     }
 

@@ -6,6 +6,15 @@ use crate::geometry::{DVec2, DVec3, Ray};
 use crate::scene::MaterialId;
 use crate::shape;
 
+/// A triangle or another face of an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// Which object's.
+    pub object: ObjectId,
+    /// Which of its faces or triangles.
+    pub primitive: u32,
+}
+
 /// Where a ray meets a surface, in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection {
@@ -86,5 +95,14 @@ impl Intersection {
     pub fn segment_to(&self, target: DVec3) -> Ray {
         let start = self.spawn(target - self.point).origin;
         Ray::between(start, target)
+    }
+
+    /// The face that the point lies on, where it cannot be met by [`Intersection::segment_to`] that target: it starts
+    /// off the face, and rises. None where the target lies so near to the face's plane that rounding could hide which
+    /// side it is on.
+    pub fn face_left_for(&self, target: DVec3) -> Option<Face> {
+        let height = self.geometric_normal.dot(target - self.point).abs();
+        let uncertainty = self.geometric_normal.abs().dot(self.point_error);
+        (height > 16.0 * uncertainty).then_some(Face { object: self.object, primitive: self.primitive })
     }
 }

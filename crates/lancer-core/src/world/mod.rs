@@ -28,7 +28,7 @@ mod tests;
 
 pub use compile::{CompileControl, CompileOptions};
 pub use error::CompileError;
-pub use intersection::Intersection;
+pub use intersection::{Face, Intersection};
 pub use media::Media;
 pub(crate) use media::Touching;
 

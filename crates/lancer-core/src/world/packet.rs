@@ -1,7 +1,7 @@
 //! Rays that are traced together.
 
 use super::geometry::Geometry;
-use super::{Hit, Object, ObjectId, ObjectIndex, World};
+use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
@@ -47,11 +47,13 @@ impl World {
         }
     }
 
-    /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells.
-    pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32) -> u32 {
+    /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells. `left` are faces that rays
+    /// start from and cannot meet: knowing them saves the exact test of each, which is too close to tell otherwise.
+    pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
         let mut occluded = 0;
-        let visited = self.visit_objects_of_packet(rays, wanted, |level, _, object, lanes, _| {
-            let hit = object.occluded_packet(level, rays, lanes, self);
+        let visited = self.visit_objects_of_packet(rays, wanted, |level, id, object, lanes, _| {
+            let own = left.map(|face| face.filter(|face| face.object == id).map(|face| face.primitive));
+            let hit = object.occluded_packet(level, rays, lanes, &own, self);
             occluded |= hit;
             hit
         });
@@ -157,15 +159,22 @@ impl Object {
         hits
     }
 
-    /// Which of the rays `wanted` it stops.
-    fn occluded_packet(&self, level: Level, rays: &RayPacket, wanted: u32, world: &World) -> u32 {
+    /// Which of the rays `wanted` it stops; none by its own face `own`.
+    fn occluded_packet(
+        &self,
+        level: Level,
+        rays: &RayPacket,
+        wanted: u32,
+        own: &[Option<u32>; LANES],
+        world: &World,
+    ) -> u32 {
         if let Some(nearest) = self.nearest_on_one_face(level, rays, &rays.t_max) {
             return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest[lane] < f64::INFINITY) << lane)
                 & wanted;
         }
         let local = self.rays_to_object(level, rays);
         if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
-            return tree.occluded_packet(&local, wanted);
+            return tree.occluded_packet(&local, wanted, own);
         }
         bits(wanted)
             .filter(|&lane| self.geometry.occluded(&local.ray(lane), &world.meshes, &Uncounted))

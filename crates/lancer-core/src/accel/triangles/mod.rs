@@ -143,7 +143,7 @@ impl TriangleTree {
         match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => false,
             Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::occluded(simd, self, Child::inner(0), ray, &narrow, tally))
+                dispatch!(self.level, simd => single::occluded(simd, self, Child::inner(0), ray, &narrow, None, tally))
             }
             Narrowed::OutOfRange => self.intersect_wide(ray, tally).is_some(),
         }
@@ -159,10 +159,15 @@ impl TriangleTree {
         hits
     }
 
-    /// Which of the rays `wanted` of a packet hit anything.
-    pub(crate) fn occluded_packet(&self, rays: &RayPacket, wanted: u32) -> u32 {
+    /// Which of the rays `wanted` of a packet hit anything; `own` are triangles that they cannot hit.
+    pub(crate) fn occluded_packet(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        own: &[Option<u32>; RayPacket::LANES],
+    ) -> u32 {
         let (mut occluded, left_over) =
-            dispatch!(self.level, simd => packet::occluded(simd, self, rays, wanted));
+            dispatch!(self.level, simd => packet::occluded(simd, self, rays, wanted, own));
         for lane in bits(left_over) {
             occluded |= u32::from(self.occluded(&rays.ray(lane), &Uncounted)) << lane;
         }

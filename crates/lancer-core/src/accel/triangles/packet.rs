@@ -465,10 +465,16 @@ impl<S: Simd> LeafVisitor for Alone<'_, '_, S> {
 
 /// Which of the rays `wanted` meet anything, and which are left to be searched one by one.
 #[inline(always)]
-pub(super) fn occluded<S: Simd>(simd: S, tree: &TriangleTree, rays: &RayPacket, wanted: u32) -> (u32, u32) {
+pub(super) fn occluded<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    rays: &RayPacket,
+    wanted: u32,
+    own: &[Option<u32>; LANES],
+) -> (u32, u32) {
     let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
     let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
-    let mut search = OcclusionSearch { simd, tree, packet, rays, occluded: 0 };
+    let mut search = OcclusionSearch { simd, tree, packet, rays, own, occluded: 0 };
     while let Some((group, backward)) = packet.octant(&mut open) {
         if group.count_ones() <= ALONE {
             left_over |= group;
@@ -486,6 +492,8 @@ struct OcclusionSearch<'a, S> {
     tree: &'a TriangleTree,
     packet: &'a NarrowPacket,
     rays: &'a RayPacket,
+    /// Triangles that the rays cannot meet.
+    own: &'a [Option<u32>; LANES],
     occluded: u32,
 }
 
@@ -498,7 +506,8 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
         if few(child, lanes) {
             for lane in bits(lanes) {
                 let (narrow, ray) = (self.packet.ray(lane, end[lane]), self.rays.ray(lane));
-                let hit = single::occluded(self.simd, self.tree, child, &ray, &narrow, &Uncounted);
+                let own = self.own[lane];
+                let hit = single::occluded(self.simd, self.tree, child, &ray, &narrow, own, &Uncounted);
                 occluded |= u32::from(hit) << lane;
             }
         } else {
@@ -507,6 +516,9 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
                 let verdict = test(self.simd, self.packet, block, triangle, lanes & !occluded, end);
                 occluded |= verdict.sure;
                 for lane in bits(verdict.maybe & !verdict.sure) {
+                    if self.own[lane] == Some(block.ids[triangle]) {
+                        continue;
+                    }
                     let meets = Canonical::new(&self.rays.ray(lane)).hits(&block.triangle(triangle));
                     occluded |= u32::from(meets) << lane;
                 }

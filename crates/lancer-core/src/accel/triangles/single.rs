@@ -146,7 +146,7 @@ impl<S: Simd, T: Tally> LeafVisitor for NearestSearch<'_, S, T> {
     }
 }
 
-/// Whether anything below `start` is hit.
+/// Whether anything below `start` is hit, other than the triangle `own`.
 #[inline(always)]
 pub(super) fn occluded<S: Simd>(
     simd: S,
@@ -154,11 +154,12 @@ pub(super) fn occluded<S: Simd>(
     start: Child,
     ray: &Ray,
     narrow: &NarrowRay,
+    own: Option<u32>,
     tally: &impl Tally,
 ) -> bool {
     let block_ray = TestRays::new(simd, narrow);
     let canonical = Canonical::new(ray);
-    let mut search = OcclusionSearch { simd, tree, narrow, block_ray, tally, canonical, found: false };
+    let mut search = OcclusionSearch { simd, tree, narrow, block_ray, own, tally, canonical, found: false };
     walk_from::<S, true>(simd, &tree.nodes, start, narrow, tally, &mut search);
     search.found
 }
@@ -169,6 +170,7 @@ struct OcclusionSearch<'a, S: Simd, T> {
     tree: &'a TriangleTree,
     narrow: &'a NarrowRay,
     block_ray: TestRays<f32x4<S>>,
+    own: Option<u32>,
     tally: &'a T,
     canonical: Canonical<'a>,
     found: bool,
@@ -188,7 +190,7 @@ impl<S: Simd, T: Tally> LeafVisitor for OcclusionSearch<'_, S, T> {
             while unsure != 0 && !self.found {
                 let lane = unsure.trailing_zeros() as usize;
                 unsure &= unsure - 1;
-                self.found = self.canonical.hits(&block.triangle(lane));
+                self.found = self.own != Some(block.ids[lane]) && self.canonical.hits(&block.triangle(lane));
             }
             if self.found {
                 return -1.0;

@@ -154,7 +154,7 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
             let (packet, wanted) = packet(&mut random, &mesh);
             for tree in &trees {
                 let nearest = tree.intersect_packet(&packet, wanted);
-                let occluded = tree.occluded_packet(&packet, wanted);
+                let occluded = tree.occluded_packet(&packet, wanted, &[None; RayPacket::LANES]);
                 assert_eq!(occluded & !wanted, 0);
                 for (lane, nearest) in nearest.into_iter().enumerate() {
                     let is_wanted = wanted >> lane & 1 == 1;

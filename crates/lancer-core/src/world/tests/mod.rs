@@ -80,7 +80,7 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
                 }
                 let wanted = [0xffff, 0x0fff, 0x1020, 0xaaaa][random.below(4)];
                 let nearest = world.intersect_packet(&packet, wanted);
-                let occluded = world.occluded_packet(&packet, wanted);
+                let occluded = world.occluded_packet(&packet, wanted, &[None; RayPacket::LANES]);
                 assert_eq!(occluded & !wanted, 0);
                 for (lane, nearest) in nearest.into_iter().enumerate() {
                     let alone = world.intersect(&packet.ray(lane)).filter(|_| wanted >> lane & 1 == 1);
@@ -97,6 +97,41 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
         }
     }
     assert!(hits[0] > 5_000 && hits[1] > 5_000, "{hits:?}");
+}
+
+/// Also towards points that hardly rise above the face, as far as they are said to rise clearly.
+#[test]
+fn no_segment_is_stopped_by_the_face_that_it_leaves() {
+    let mut random = Random::new(12);
+    let (mut known, mut grazing) = (0, 0);
+    for seed in 0..4 {
+        let world = compile(&crowd(seed));
+        let mut packets = 0;
+        while packets < 300 {
+            let ray = random.ray(3.0);
+            let Some(hit) = world.intersect(&ray) else { continue };
+            packets += 1;
+            let at = world.intersection(&ray, &hit);
+            let mut segments = RayPacket::splat(&ray);
+            let mut left = [None; RayPacket::LANES];
+            for lane in 0..RayPacket::LANES {
+                let height = 10.0_f64.powf(random.between(-18.0, 0.0));
+                let across =
+                    at.geometric_normal.cross(random.point(1.0)) * 10.0_f64.powf(random.between(-4.0, 1.0));
+                let target = at.point + across + at.facing_geometric_normal() * height;
+                segments.set(lane, &at.segment_to(target));
+                left[lane] = at.face_left_for(target);
+                known += u32::from(left[lane].is_some());
+                grazing += u32::from(left[lane].is_some() && height < 1e-9 * across.length());
+            }
+            let occluded = world.occluded_packet(&segments, 0xffff, &left);
+            for lane in 0..RayPacket::LANES {
+                let alone = world.occluded(&segments.ray(lane));
+                assert_eq!(occluded >> lane & 1 == 1, alone, "{at:?}, {:?}", segments.ray(lane));
+            }
+        }
+    }
+    assert!(known > 10_000 && grazing > 1_000, "{known} {grazing}");
 }
 
 #[test]
