@@ -6,7 +6,7 @@
 mod bounds;
 pub mod error;
 mod fan;
-mod packet;
+pub(crate) mod packet;
 pub mod portable;
 mod ray;
 mod transform;
@@ -14,6 +14,6 @@ mod transform;
 pub use bounds::Bounds;
 pub use fan::DirectionFan;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
-pub use packet::RayPacket;
+pub use packet::{RayPacket, Vectors};
 pub use ray::Ray;
 pub use transform::{Placement, SingularTransform, Transform};

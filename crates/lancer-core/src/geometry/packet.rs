@@ -2,15 +2,32 @@
 
 use super::{DVec3, Ray};
 
+/// A vector for each of sixteen rays. Shape: `[axis][lane]`.
+pub type Vectors = [[f64; RayPacket::LANES]; 3];
+
+/// The vector in a lane.
+#[inline(always)]
+pub(crate) fn at(vectors: &Vectors, lane: usize) -> DVec3 {
+    DVec3::new(vectors[0][lane], vectors[1][lane], vectors[2][lane])
+}
+
+/// Puts a vector into a lane.
+#[inline(always)]
+pub(crate) fn put(vectors: &mut Vectors, lane: usize, vector: DVec3) {
+    for axis in 0..3 {
+        vectors[axis][lane] = vector[axis];
+    }
+}
+
 /// Sixteen rays by coordinate, as vector instructions want them.
 ///
 /// Shape: `[axis][lane]`. Which lanes hold a ray is for whoever made the packet to know, as a mask of a bit a lane.
 #[derive(Clone, Debug)]
 pub struct RayPacket {
     /// See [`Ray::origin`].
-    pub origin: [[f64; Self::LANES]; 3],
+    pub origin: Vectors,
     /// See [`Ray::direction`].
-    pub direction: [[f64; Self::LANES]; 3],
+    pub direction: Vectors,
     /// See [`Ray::t_max`].
     pub t_max: [f64; Self::LANES],
 }
@@ -31,8 +48,7 @@ impl RayPacket {
     /// Where `lane` is not below [`RayPacket::LANES`].
     #[inline(always)]
     pub fn ray(&self, lane: usize) -> Ray {
-        let at = |v: &[[f64; Self::LANES]; 3]| DVec3::new(v[0][lane], v[1][lane], v[2][lane]);
-        Ray { origin: at(&self.origin), direction: at(&self.direction), t_max: self.t_max[lane] }
+        Ray { origin: at(&self.origin, lane), direction: at(&self.direction, lane), t_max: self.t_max[lane] }
     }
 
     /// Puts a ray into a lane.
@@ -41,10 +57,8 @@ impl RayPacket {
     /// Where `lane` is not below [`RayPacket::LANES`].
     #[inline(always)]
     pub fn set(&mut self, lane: usize, ray: &Ray) {
-        for axis in 0..3 {
-            self.origin[axis][lane] = ray.origin[axis];
-            self.direction[axis][lane] = ray.direction[axis];
-        }
+        put(&mut self.origin, lane, ray.origin);
+        put(&mut self.direction, lane, ray.direction);
         self.t_max[lane] = ray.t_max;
     }
 }

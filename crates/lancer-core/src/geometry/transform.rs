@@ -178,11 +178,13 @@ impl Placement {
     }
 
     /// The image in the world of a point of the object.
+    #[inline(always)]
     pub fn point_to_world(&self, point_in_object: DVec3) -> DVec3 {
         self.world_from_object * point_in_object + self.translation
     }
 
     /// The image in the world of a direction of the object, not renormalised.
+    #[inline(always)]
     pub fn vector_to_world(&self, vector_in_object: DVec3) -> DVec3 {
         self.world_from_object * vector_in_object
     }
@@ -190,6 +192,7 @@ impl Placement {
     /// The unit normal in the world of a normal of the object, by the inverse transpose.
     ///
     /// It keeps its side: what is outside of the object stays outside, mirrored or not.
+    #[inline(always)]
     pub fn normal_to_world(&self, normal_in_object: DVec3) -> DVec3 {
         normalize(self.object_from_world.transpose() * normal_in_object)
     }
@@ -199,6 +202,7 @@ impl Placement {
     /// `error_in_object` bounds the point's distance from the surface in the object's space. Added to it are
     /// the rounding of the way out into the world and of the way back that the next ray takes, in which the
     /// inverse is itself inexact; both grow with the transform's condition.
+    #[inline(always)]
     pub fn error_in_world(&self, point_in_object: DVec3, error_in_object: DVec3) -> DVec3 {
         let out = absolute(self.world_from_object);
         let back = absolute(self.object_from_world);
@@ -234,11 +238,13 @@ fn largest_stretch(m: DMat3) -> f64 {
 }
 
 /// `v` divided by its length, safe for lengths whose square would overflow or vanish.
+#[inline(always)]
 pub(crate) fn normalize(v: DVec3) -> DVec3 {
     let scaled = v / v.abs().max_element();
     scaled / scaled.length()
 }
 
+#[inline(always)]
 fn absolute(m: DMat3) -> DMat3 {
     DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }

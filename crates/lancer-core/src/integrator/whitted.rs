@@ -168,11 +168,13 @@ impl<'w> Whitted<'w> {
     pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
         counts.primary += rays.count() as u64;
         let hits = self.intersect(rays.packet(), rays.lanes(), &Uncounted);
+        let mut met = [None; LANES];
+        self.world.intersections(rays.packet(), &hits, &mut met);
         let mut occlusions = [1.0; LANES];
-        for (lane, hit) in hits.iter().enumerate() {
-            if let Some(hit) = hit {
-                let (at, _) = self.world.seen_surface(&rays.packet().ray(lane), hit, &Uncounted);
-                occlusions[lane] = self.occlusion_at(&at, rays.keys()[lane], counts);
+        for (lane, at) in met.iter_mut().enumerate() {
+            if let Some(at) = at {
+                self.world.see(&rays.packet().ray(lane), at, &Uncounted);
+                occlusions[lane] = self.occlusion_at(at, rays.keys()[lane], counts);
             }
         }
         occlusions
@@ -234,7 +236,7 @@ struct Arrival<'a> {
     id: RayId,
     path: &'a Path,
     ray: Ray,
-    at: Intersection,
+    at: &'a Intersection,
     /// Other dielectrics whose surfaces coincide with this one.
     touching: Vec<Touching>,
     point: ShadingPoint<'a>,
@@ -252,6 +254,9 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         };
         let mut paths: ArrayVec<Path, LANES> = first.keys().iter().map(path).collect();
         self.step(RayId(0), first.packet(), first.lanes(), &paths, &mut radiances);
+        if self.pending.iter().all(VecDeque::is_empty) {
+            return radiances;
+        }
         let mut rays = first.packet().clone();
         for id in 1.. {
             let mut wanted = 0;
@@ -293,18 +298,19 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     ) {
         let world = self.integrator.world;
         let hits = self.integrator.intersect(rays, wanted, self.tally);
-        world.fetch(&hits);
+        let mut met = [None; LANES];
+        world.intersections(rays, &hits, &mut met);
         let mut arrivals = ArrayVec::<Arrival, LANES>::new();
-        for lane in bits(wanted) {
+        for (lane, at) in met.iter_mut().enumerate().filter(|(lane, _)| wanted >> lane & 1 == 1) {
             let (path, ray) = (&paths[lane], rays.ray(lane));
             self.count(path.kind);
-            let Some(hit) = &hits[lane] else {
+            let Some(at) = at else {
                 self.listeners[lane].begin_ray(id, path.kind, path.throughput, &ray);
                 self.listeners[lane].background(world.background());
                 radiances[lane] += world.background() * path.throughput;
                 continue;
             };
-            let (at, touching) = world.seen_surface(&ray, hit, self.tally);
+            let touching = world.see(&ray, at, self.tally);
             let material = world.material(at.material);
             let point = ShadingPoint {
                 position: at.point,
@@ -319,7 +325,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         for (index, arrival) in arrivals.iter().enumerate() {
             let &Arrival { lane, path, .. } = arrival;
             self.listeners[lane].begin_ray(id, path.kind, path.throughput, &arrival.ray);
-            self.listeners[lane].surface(&arrival.at, arrival.point.color);
+            self.listeners[lane].surface(arrival.at, arrival.point.color);
             let radiance = self.ambient(arrival) + self.lights(index, arrival);
             radiances[lane] += radiance * path.throughput;
             if path.depth > 0 {
@@ -342,7 +348,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         let (world, key) = (self.integrator.world, arrival.path.key);
         let sampler = &self.integrator.occlusion;
-        term.occlusion = sampler.factor_tallied(world, &arrival.at, key, self.counts, self.tally);
+        term.occlusion = sampler.factor_tallied(world, arrival.at, key, self.counts, self.tally);
         self.listeners[arrival.lane].ambient(&term);
         term.radiance()
     }
@@ -408,7 +414,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         let bend = Bend::new(self.integrator.world, arrival);
         let (reflect, transmit) = bend.weights(material);
-        let mirrored = mirror_direction(&arrival.at, arrival.ray.direction);
+        let mirrored = mirror_direction(arrival.at, arrival.ray.direction);
         if wants_reflection && !reflect.is_black() {
             let media = arrival.path.media.clone();
             self.spawn(arrival, &bend, Branch::Reflection, RayKind::Reflection, reflect, mirrored, media);
@@ -479,7 +485,7 @@ struct Bend {
 
 impl Bend {
     fn new(world: &World, arrival: &Arrival) -> Self {
-        let (at, media) = (&arrival.at, &arrival.path.media);
+        let (at, media) = (arrival.at, &arrival.path.media);
         let direction = arrival.ray.direction;
         let cosine = -direction.dot(arrival.point.normal);
         if arrival.point.material.transmit.is_black() {

@@ -65,7 +65,9 @@ pub fn feature_at(
 /// The surface that a camera ray shows.
 pub(super) fn seen(world: &World, ray: &Ray) -> Option<Intersection> {
     let hit = world.intersect(ray)?;
-    Some(world.seen_surface(ray, &hit, &Uncounted).0)
+    let mut at = world.intersection(ray, &hit);
+    world.see(ray, &mut at, &Uncounted);
+    Some(at)
 }
 
 /// What is seen at the centre of each pixel. It outlives the world that it was found in.

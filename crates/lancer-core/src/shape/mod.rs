@@ -18,7 +18,7 @@ pub mod triangle;
 mod tests;
 
 use crate::color::Rgb;
-use crate::geometry::{DVec2, DVec3};
+use crate::geometry::{DVec2, DVec3, RayPacket, Vectors, packet};
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,41 @@ pub struct SurfacePoint {
     pub uv: DVec2,
     /// The colour that the shape itself has here; white but for meshes with vertex colours.
     pub vertex_color: Rgb,
+}
+
+/// The surfaces at the hits of a packet, lane by lane as vector instructions want them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfacePoints {
+    pub(crate) point: Vectors,
+    pub(crate) point_error: Vectors,
+    pub(crate) geometric_normal: Vectors,
+    pub(crate) shading_normal: Vectors,
+    pub(crate) uv: [[f64; RayPacket::LANES]; 2],
+    pub(crate) vertex_color: Vectors,
+}
+
+impl SurfacePoints {
+    #[inline(always)]
+    pub(crate) fn at(&self, lane: usize) -> SurfacePoint {
+        SurfacePoint {
+            point: packet::at(&self.point, lane),
+            point_error: packet::at(&self.point_error, lane),
+            geometric_normal: packet::at(&self.geometric_normal, lane),
+            shading_normal: packet::at(&self.shading_normal, lane),
+            uv: DVec2::new(self.uv[0][lane], self.uv[1][lane]),
+            vertex_color: packet::at(&self.vertex_color, lane).to_array().into(),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, lane: usize, surface: &SurfacePoint) {
+        packet::put(&mut self.point, lane, surface.point);
+        packet::put(&mut self.point_error, lane, surface.point_error);
+        packet::put(&mut self.geometric_normal, lane, surface.geometric_normal);
+        packet::put(&mut self.shading_normal, lane, surface.shading_normal);
+        (self.uv[0][lane], self.uv[1][lane]) = (surface.uv.x, surface.uv.y);
+        packet::put(&mut self.vertex_color, lane, surface.vertex_color.to_array().into());
+    }
 }
 
 /// The stretch of a line inside of a convex shape, with the faces at its ends.

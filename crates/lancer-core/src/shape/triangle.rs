@@ -9,21 +9,61 @@
 //! signs can never contradict the exact ones of the sheared vertices, since rounding is monotonic; they can
 //! only become zero, which counts as inside.
 
-use super::{Hit, SurfacePoint};
+use super::{Hit, SurfacePoint, SurfacePoints};
 use crate::color::Rgb;
 use crate::geometry::error::gamma;
-use crate::geometry::{DVec2, DVec3, Ray};
+use crate::geometry::{DVec2, DVec3, Ray, RayPacket, Vectors, packet};
 use crate::mesh::Mesh;
+
+const LANES: usize = RayPacket::LANES;
 
 /// A ray made ready for the triangles of one mesh: the axes permuted and sheared so that it runs along +z.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearedRay {
     /// The origin, its axes permuted.
     origin: [f64; 3],
-    /// The two axes that the ray follows less, in an order that keeps triangles' winding, then the other.
-    axes: [usize; 3],
+    order: Order,
     /// Shear of x, shear of y, scale of z.
     shear: [f64; 3],
+}
+
+/// An order of axes: the two that a ray follows less, so that triangles keep their winding, then the other.
+#[derive(Clone, Copy, Debug)]
+struct Order {
+    follows_x: bool,
+    follows_y: bool,
+    /// Whether it goes down the axis that it follows.
+    backward: bool,
+}
+
+impl Order {
+    #[inline(always)]
+    fn along(direction: DVec3) -> Self {
+        let size = direction.abs();
+        let follows_x = (size.x > size.y) & (size.x > size.z);
+        let follows_y = !follows_x & (size.y > size.z);
+        let followed = if follows_x {
+            direction.x
+        } else if follows_y {
+            direction.y
+        } else {
+            direction.z
+        };
+        Self { follows_x, follows_y, backward: followed < 0.0 }
+    }
+
+    /// Without branches, so that vector code can be made of it.
+    #[inline(always)]
+    fn of(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [a, b, c] = if self.follows_x {
+            [y, z, x]
+        } else if self.follows_y {
+            [z, x, y]
+        } else {
+            [x, y, z]
+        };
+        if self.backward { [b, a, c] } else { [a, b, c] }
+    }
 }
 
 /// Where a ray meets a triangle's plane inside of its edges.
@@ -37,21 +77,11 @@ pub struct TriangleHit {
 
 impl ShearedRay {
     /// Prepares a ray; its direction must not be zero.
+    #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
-        let size = ray.direction.abs();
-        let z = if size.x > size.y && size.x > size.z {
-            0
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if ray.direction[z] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
-        }
-        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-        Self { origin: [o[x], o[y], o[z]], axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
+        let order = Order::along(ray.direction);
+        let [x, y, z] = order.of(ray.direction.to_array());
+        Self { origin: order.of(ray.origin.to_array()), order, shear: [x / z, y / z, 1.0 / z] }
     }
 
     /// The hit with the triangle at any t, behind the origin too.
@@ -59,31 +89,34 @@ impl ShearedRay {
     /// A triangle seen exactly edge-on is not hit; in a closed mesh its neighbours are.
     #[inline(always)]
     pub fn intersect(&self, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
+        let hit = self.meet(corners);
+        (!hit.t.is_nan()).then_some(hit)
+    }
+
+    /// The same without branches: where there is no hit, its t is NaN.
+    #[inline(always)]
+    fn meet(&self, corners: &[[f32; 3]; 3]) -> TriangleHit {
         let [a, b, c] = corners;
         let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (self.sheared(a), self.sheared(b), self.sheared(c));
         let u = cx * by - cy * bx;
         let v = ax * cy - ay * cx;
         let w = bx * ay - by * ax;
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-            return None;
-        }
+        let some_negative = (u < 0.0) | (v < 0.0) | (w < 0.0);
+        let some_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
         let determinant = u + v + w;
-        if determinant == 0.0 {
-            return None;
-        }
         let t = self.shear[2] * (u * az + v * bz + w * cz) / determinant;
-        Some(TriangleHit { t, barycentric: [u / determinant, v / determinant, w / determinant] })
+        let misses = (some_negative & some_positive) | (determinant == 0.0);
+        TriangleHit {
+            t: if misses { f64::NAN } else { t },
+            barycentric: [u / determinant, v / determinant, w / determinant],
+        }
     }
 
     #[inline(always)]
-    fn sheared(&self, point: &[f32; 3]) -> [f64; 3] {
-        let [x, y, z] = self.axes;
-        let along = f64::from(point[z]) - self.origin[2];
-        [
-            f64::from(point[x]) - self.origin[0] - self.shear[0] * along,
-            f64::from(point[y]) - self.origin[1] - self.shear[1] * along,
-            along,
-        ]
+    fn sheared(&self, &[x, y, z]: &[f32; 3]) -> [f64; 3] {
+        let [x, y, z] = self.order.of([f64::from(x), f64::from(y), f64::from(z)]);
+        let along = z - self.origin[2];
+        [x - self.origin[0] - self.shear[0] * along, y - self.origin[1] - self.shear[1] * along, along]
     }
 }
 
@@ -143,28 +176,133 @@ impl<'a> Canonical<'a> {
 /// coordinates are interpolated, or are the barycentric ones of the last two corners where the mesh has none;
 /// vertex colours are interpolated.
 pub fn surface(ray: &Ray, mesh: &Mesh, primitive: u32) -> SurfacePoint {
-    let hit = ShearedRay::new(ray).intersect(&mesh.vertices(primitive));
-    let [u, v, w] = hit.map_or([1.0, 0.0, 0.0], |hit| hit.barycentric);
-    let [a, b, c] = mesh.corners(primitive);
-    let across = (b - a).cross(c - a);
-    let geometric_normal = if across == DVec3::ZERO { -ray.direction } else { across };
-    SurfacePoint {
-        point: a * u + b * v + c * w,
-        point_error: mesh.bounds().magnitude() * gamma(ON_TRIANGLE),
-        geometric_normal,
-        shading_normal: mesh
-            .corner_normals(primitive)
-            .and_then(|[a, b, c]| shading_normal(a * u + b * v + c * w, geometric_normal))
-            .unwrap_or(geometric_normal),
-        uv: mesh.corner_uvs(primitive).map_or(DVec2::new(v, w), |[a, b, c]| a * u + b * v + c * w),
-        vertex_color: mesh.corner_colors(primitive).map_or(Rgb::WHITE, |[a, b, c]| a * u + b * v + c * w),
+    let (weights, mut surface) = flat(ray, &mesh.vertices(primitive), error_on(mesh));
+    if let Some(normals) = mesh.corner_normals(primitive) {
+        surface.shading_normal = shading_normal(interpolate(weights, normals), surface.geometric_normal);
+    }
+    if let Some([a, b, c]) = mesh.corner_uvs(primitive) {
+        surface.uv = a * weights.x + b * weights.y + c * weights.z;
+    }
+    if let Some([a, b, c]) = mesh.corner_colors(primitive) {
+        surface.vertex_color = a * weights.x + b * weights.y + c * weights.z;
+    }
+    surface
+}
+
+/// The surfaces at hits of a packet with triangles of a mesh, by lane: each as [`surface`] finds it.
+#[inline(always)]
+pub(crate) fn surfaces(
+    rays: &RayPacket,
+    mesh: &Mesh,
+    triangles: &[u32; LANES],
+    surfaces: &mut SurfacePoints,
+) {
+    let data = mesh.data();
+    let error = error_on(mesh);
+    let corners = Corners::gather(mesh, triangles, &data.positions);
+    let mut weights = Vectors::default();
+    for lane in 0..LANES {
+        let (at, surface) = flat(&rays.ray(lane), &corners.lane(lane), error);
+        packet::put(&mut weights, lane, at);
+        surfaces.put(lane, &surface);
+    }
+    if !data.normals.is_empty() {
+        let normals = Corners::gather(mesh, triangles, &data.normals);
+        for lane in 0..LANES {
+            let interpolated = interpolate(packet::at(&weights, lane), normals.lane(lane).map(widened));
+            let facing = packet::at(&surfaces.geometric_normal, lane);
+            packet::put(&mut surfaces.shading_normal, lane, shading_normal(interpolated, facing));
+        }
+    }
+    if !data.uvs.is_empty() {
+        let uvs = Corners::gather(mesh, triangles, &data.uvs);
+        for lane in 0..LANES {
+            let uvs = uvs.lane(lane).map(|[u, v]| DVec3::new(f64::from(u), f64::from(v), 0.0));
+            let uv = interpolate(packet::at(&weights, lane), uvs);
+            (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
+        }
+    }
+    if !data.colors.is_empty() {
+        let colors = Corners::gather(mesh, triangles, &data.colors);
+        for lane in 0..LANES {
+            let color = interpolate(packet::at(&weights, lane), colors.lane(lane).map(widened));
+            packet::put(&mut surfaces.vertex_color, lane, color);
+        }
     }
 }
 
-/// The interpolated normal on the geometric one's side, or none where it vanishes.
-fn shading_normal(interpolated: DVec3, geometric_normal: DVec3) -> Option<DVec3> {
-    let unit = interpolated.try_normalize()?;
-    Some(if unit.dot(geometric_normal) < 0.0 { -unit } else { unit })
+/// `N` numbers at each corner of the triangles that rays of a packet have hit. By corner, number and lane.
+struct Corners<const N: usize>([[[f32; LANES]; N]; 3]);
+
+impl<const N: usize> Corners<N> {
+    #[inline(always)]
+    fn gather(mesh: &Mesh, triangles: &[u32; LANES], of_vertices: &[[f32; N]]) -> Self {
+        let mut corners = [[[0.0; LANES]; N]; 3];
+        for (lane, &triangle) in triangles.iter().enumerate() {
+            let vertices = mesh.data().indices[triangle as usize];
+            for (corner, vertex) in corners.iter_mut().zip(vertices) {
+                for (lanes, number) in corner.iter_mut().zip(of_vertices[vertex as usize]) {
+                    lanes[lane] = number;
+                }
+            }
+        }
+        Self(corners)
+    }
+
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> [[f32; N]; 3] {
+        let mut corners = [[0.0; N]; 3];
+        for (corner, numbers) in corners.iter_mut().zip(&self.0) {
+            for (number, lanes) in corner.iter_mut().zip(numbers) {
+                *number = lanes[lane];
+            }
+        }
+        corners
+    }
+}
+
+/// The weights of the corners at a hit, and the surface of a triangle that has nothing but corners. Without branches.
+#[inline(always)]
+fn flat(ray: &Ray, vertices: &[[f32; 3]; 3], point_error: DVec3) -> (DVec3, SurfacePoint) {
+    let hit = ShearedRay::new(ray).meet(vertices);
+    let weights = if hit.t.is_nan() { DVec3::X } else { hit.barycentric.into() };
+    let [a, b, c] = [widened(vertices[0]), widened(vertices[1]), widened(vertices[2])];
+    let across = (b - a).cross(c - a);
+    let vanishes = (across.x == 0.0) & (across.y == 0.0) & (across.z == 0.0);
+    let geometric_normal = if vanishes { -ray.direction } else { across };
+    let surface = SurfacePoint {
+        point: interpolate(weights, [a, b, c]),
+        point_error,
+        geometric_normal,
+        shading_normal: geometric_normal,
+        uv: DVec2::new(weights.y, weights.z),
+        vertex_color: Rgb::WHITE,
+    };
+    (weights, surface)
+}
+
+#[inline(always)]
+fn widened([x, y, z]: [f32; 3]) -> DVec3 {
+    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+}
+
+#[inline(always)]
+fn interpolate(weights: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    a * weights.x + b * weights.y + c * weights.z
+}
+
+/// The interpolated normal on the geometric one's side, or that one where it vanishes. Without branches.
+#[inline(always)]
+fn shading_normal(interpolated: DVec3, geometric_normal: DVec3) -> DVec3 {
+    let reciprocal = interpolated.length_recip();
+    let unit = interpolated * reciprocal;
+    let unit = if unit.dot(geometric_normal) < 0.0 { -unit } else { unit };
+    if reciprocal.is_finite() & (reciprocal > 0.0) { unit } else { geometric_normal }
+}
+
+/// How far a hit may lie from the triangle that it was found on.
+fn error_on(mesh: &Mesh) -> DVec3 {
+    mesh.bounds().magnitude() * gamma(ON_TRIANGLE)
 }
 
 /// Rounded operations between a mesh's vertices and a hit on one of its triangles, there and back: three

@@ -3,10 +3,11 @@
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, KdTree, Primitives, Tally};
 use crate::geometry::error::gamma;
-use crate::geometry::{Bounds, DVec3, Ray};
+use crate::geometry::{Bounds, DVec3, Ray, RayPacket};
 use crate::mesh::Mesh;
 use crate::shape::triangle::{Canonical, Nearest};
-use crate::shape::{Hit, SurfacePoint, cube, cylinder, plane, sphere, triangle};
+use crate::shape::{Hit, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
+use crate::world;
 use std::sync::Arc;
 
 /// A canonical shape, or a mesh by its place in the world.
@@ -159,6 +160,31 @@ impl PreparedMesh {
                 found
             }
             TriangleIndex::None => (0..self.mesh.triangle_count() as u32).any(hits),
+        }
+    }
+}
+
+impl Geometry {
+    /// The surfaces at hits of a packet, by lane: each as [`Geometry::surface`] finds it, and where there is no hit,
+    /// nothing of use.
+    #[inline(always)]
+    pub(super) fn surfaces(
+        self,
+        rays: &RayPacket,
+        hits: &[Option<world::Hit>; RayPacket::LANES],
+        meshes: &[Arc<PreparedMesh>],
+        surfaces: &mut SurfacePoints,
+    ) {
+        if let Self::Mesh(index) = self {
+            let any = hits.iter().flatten().next().map_or(0, |hit| hit.primitive);
+            let triangles = hits.map(|hit| hit.map_or(any, |hit| hit.primitive));
+            return triangle::surfaces(rays, &meshes[index as usize].mesh, &triangles, surfaces);
+        }
+        for (lane, hit) in hits.iter().enumerate() {
+            if let Some(hit) = hit {
+                let hit = Hit { t: hit.t, primitive: hit.primitive };
+                surfaces.put(lane, &self.surface(&rays.ray(lane), &hit, meshes));
+            }
         }
     }
 }

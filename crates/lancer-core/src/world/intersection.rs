@@ -1,10 +1,16 @@
 //! A hit with everything that shading wants to know of it.
 
-use super::{Hit, ObjectId, World};
+use super::{Hit, Object, ObjectId, ObjectIndex, World};
 use crate::color::Rgb;
-use crate::geometry::{DVec2, DVec3, Ray};
+use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket};
 use crate::scene::MaterialId;
-use crate::shape;
+use crate::shape::{self, SurfacePoint, SurfacePoints};
+use fearless_simd::{Level, dispatch};
+
+const LANES: usize = RayPacket::LANES;
+
+/// So many hits with an object are worth vector code. Untuned.
+const TOGETHER: usize = 3;
 
 /// A triangle or another face of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,29 +51,26 @@ pub struct Intersection {
 impl Intersection {
     pub(super) fn new(world: &World, ray: &Ray, hit: &Hit) -> Self {
         let object = world.object(hit.object);
-        let placement = &object.placement;
-        let ray_in_object = placement.ray_to_object(ray);
+        let ray = object.placement.ray_to_object(ray);
         let local_hit = shape::Hit { t: hit.t, primitive: hit.primitive };
-        let surface = object.geometry.surface(&ray_in_object, &local_hit, &world.meshes);
-        let geometric_normal = placement.normal_to_world(surface.geometric_normal);
-        // Most often they are one.
-        let shading_normal = match surface.shading_normal == surface.geometric_normal {
-            true => geometric_normal,
-            false => placement.normal_to_world(surface.shading_normal),
-        };
+        let local = object.geometry.surface(&ray, &local_hit, &world.meshes);
+        let surface = to_world(&object.placement, &local);
+        Self::at(object, hit, &surface, is_from_inside(&local, &ray))
+    }
+
+    fn at(object: &Object, hit: &Hit, surface: &SurfacePoint, from_inside: bool) -> Self {
         Self {
             t: hit.t,
-            point: placement.point_to_world(surface.point),
-            point_error: placement.error_in_world(surface.point, surface.point_error),
-            geometric_normal,
-            shading_normal,
+            point: surface.point,
+            point_error: surface.point_error,
+            geometric_normal: surface.geometric_normal,
+            shading_normal: surface.shading_normal,
             uv: surface.uv,
             vertex_color: surface.vertex_color,
             object: hit.object,
             primitive: hit.primitive,
             material: object.material,
-            // The inverse transpose keeps the sign of this product, so it is taken where it is most exact.
-            from_inside: surface.geometric_normal.dot(ray_in_object.direction) > 0.0,
+            from_inside,
         }
     }
 
@@ -105,4 +108,79 @@ impl Intersection {
         let uncertainty = self.geometric_normal.abs().dot(self.point_error);
         (height > 16.0 * uncertainty).then_some(Face { object: self.object, primitive: self.primitive })
     }
+}
+
+impl World {
+    /// The surfaces at hits of a packet, by lane: each as [`World::intersection`] finds it.
+    pub(crate) fn intersections(
+        &self,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
+        found: &mut [Option<Intersection>; LANES],
+    ) {
+        *found = [None; LANES];
+        for lane in 0..LANES {
+            let Some(hit) = hits[lane].filter(|_| found[lane].is_none()) else { continue };
+            let alike = |other: &Option<Hit>| other.filter(|other| other.object == hit.object);
+            let hits = hits.each_ref().map(alike);
+            match self.index {
+                ObjectIndex::Bvh { level, .. } if hits.iter().flatten().count() >= TOGETHER => {
+                    self.intersections_with(level, self.object(hit.object), rays, &hits, found);
+                }
+                _ => found[lane] = Some(self.intersection(&rays.ray(lane), &hit)),
+            }
+        }
+    }
+
+    /// Adds the surfaces at hits with one object.
+    fn intersections_with(
+        &self,
+        level: Level,
+        object: &Object,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
+        found: &mut [Option<Intersection>; LANES],
+    ) {
+        let mut from_inside = [false; LANES];
+        let mut surfaces = SurfacePoints::default();
+        dispatch!(level, _simd => {
+            let rays = object.placement.rays_to_object(rays);
+            object.geometry.surfaces(&rays, hits, &self.meshes, &mut surfaces);
+            for (lane, from_inside) in from_inside.iter_mut().enumerate() {
+                let surface = surfaces.at(lane);
+                *from_inside = is_from_inside(&surface, &rays.ray(lane));
+                surfaces.put(lane, &to_world(&object.placement, &surface));
+            }
+        });
+        for lane in 0..LANES {
+            if let Some(hit) = &hits[lane] {
+                found[lane] = Some(Intersection::at(object, hit, &surfaces.at(lane), from_inside[lane]));
+            }
+        }
+    }
+}
+
+/// A surface of an object in the world, its normals of length 1.
+#[inline(always)]
+fn to_world(placement: &Placement, surface: &SurfacePoint) -> SurfacePoint {
+    let geometric_normal = placement.normal_to_world(surface.geometric_normal);
+    // Most often they are one.
+    let shading_normal = match surface.shading_normal == surface.geometric_normal {
+        true => geometric_normal,
+        false => placement.normal_to_world(surface.shading_normal),
+    };
+    SurfacePoint {
+        point: placement.point_to_world(surface.point),
+        point_error: placement.error_in_world(surface.point, surface.point_error),
+        geometric_normal,
+        shading_normal,
+        ..*surface
+    }
+}
+
+/// Whether a ray meets a surface from its inner side, both in the object's space: the inverse transpose keeps the sign
+/// of this product, so it is taken where it is most exact.
+#[inline(always)]
+fn is_from_inside(surface: &SurfacePoint, ray: &Ray) -> bool {
+    surface.geometric_normal.dot(ray.direction) > 0.0
 }

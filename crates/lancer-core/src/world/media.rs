@@ -118,24 +118,19 @@ impl World {
         !self.material(object.material).transmit.is_black()
     }
 
-    /// The surface that counts at a hit, and the dielectrics that touch it there. An opaque surface that touches a
-    /// transparent one, as where glass stands on a table, is what is seen.
-    pub(crate) fn seen_surface(
-        &self,
-        ray: &Ray,
-        hit: &Hit,
-        tally: &impl Tally,
-    ) -> (Intersection, Vec<Touching>) {
-        let at = self.intersection(ray, hit);
+    /// Puts the surface that counts in the place of the one that a ray has met, and returns the dielectrics that touch
+    /// it there. An opaque surface that touches a transparent one, as where glass stands on a table, is what is seen.
+    pub(crate) fn see(&self, ray: &Ray, at: &mut Intersection, tally: &impl Tally) -> Vec<Touching> {
         if self.material(at.material).transmit.is_black() {
-            return (at, Vec::new());
+            return Vec::new();
         }
-        let touching = self.touching(&at, ray.direction, tally);
+        let touching = self.touching(at, ray.direction, tally);
         match touching.iter().find(|other| !other.is_transmissive) {
             Some(&Touching { object, primitive, .. }) => {
-                (self.intersection(ray, &Hit { t: hit.t, object, primitive }), Vec::new())
+                *at = self.intersection(ray, &Hit { t: at.t, object, primitive });
+                Vec::new()
             }
-            None => (at, touching),
+            None => touching,
         }
     }
 

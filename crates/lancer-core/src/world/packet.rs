@@ -8,7 +8,6 @@ use crate::accel::{Uncounted, bits};
 use crate::geometry::{Placement, Ray, RayPacket};
 use crate::shape::{self, plane, sphere};
 use fearless_simd::{Level, dispatch};
-use std::hint::black_box;
 
 const LANES: usize = RayPacket::LANES;
 
@@ -35,16 +34,6 @@ impl World {
             best[lane] = self.intersect(&rays.ray(lane));
         }
         best
-    }
-
-    /// Reads the corners of the triangles that were hit: memory then answers for all of them together, where surfaces
-    /// that are found one by one would wait for each.
-    pub(crate) fn fetch(&self, hits: &[Option<Hit>; LANES]) {
-        for hit in hits.iter().flatten() {
-            if let Geometry::Mesh(mesh) = self.object(hit.object).geometry {
-                black_box(self.meshes[mesh as usize].mesh.vertices(hit.primitive));
-            }
-        }
     }
 
     /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells. `left` are faces that rays

@@ -7,7 +7,7 @@ mod recompile;
 use super::*;
 use crate::accel::Accelerator;
 
-use crate::geometry::{DVec3, RayPacket, Transform};
+use crate::geometry::{DVec3, RayPacket, Transform, portable};
 use crate::mesh::{Mesh, MeshData};
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::{Node, Scene, Shape, Texture};
@@ -99,6 +99,52 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
     assert!(hits[0] > 5_000 && hits[1] > 5_000, "{hits:?}");
 }
 
+#[test]
+fn surfaces_of_a_packet_are_those_of_its_rays() {
+    let mut random = Random::new(13);
+    let mut data = ball(12, 24);
+    let vertices = data.positions.len();
+    // Every tenth is no direction.
+    data.normals = (0..vertices)
+        .map(|vertex| if vertex % 10 == 0 { [0.0; 3] } else { random.point(1.0).as_vec3().to_array() })
+        .collect();
+    data.uvs =
+        (0..vertices).map(|_| [random.between(-1.0, 2.0) as f32, random.between(0.0, 1.0) as f32]).collect();
+    data.colors = (0..vertices).map(|_| [(); 3].map(|()| random.between(0.0, 1.0) as f32)).collect();
+    let painted = Arc::new(Mesh::new(data).unwrap());
+    let mut together = 0;
+    for seed in 0..4 {
+        let mut scene = crowd(seed);
+        for _ in 0..20 {
+            let transform = random.transform(0.3, 1.0);
+            scene.add(Node::mesh("painted", Arc::clone(&painted)).with_transform(transform));
+        }
+        for instructions in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
+            let options = CompileOptions { instructions: Some(instructions), ..CompileOptions::default() };
+            let world = World::compile(&scene, &options).unwrap();
+            for _ in 0..200 {
+                let (first, spread) = (random.ray(3.0), [1e-3, 0.03, 0.3][random.below(3)]);
+                let mut packet = RayPacket::splat(&first);
+                for lane in 0..RayPacket::LANES {
+                    let direction = first.direction + random.point(spread);
+                    packet.set(lane, &Ray { direction, ..first });
+                }
+                let hits = world.intersect_packet(&packet, 0xfff7);
+                let mut met = [None; RayPacket::LANES];
+                world.intersections(&packet, &hits, &mut met);
+                for (lane, met) in met.into_iter().enumerate() {
+                    let alone = hits[lane].map(|hit| world.intersection(&packet.ray(lane), &hit));
+                    assert_eq!(met, alone, "{instructions:?} {:?}", packet.ray(lane));
+                }
+                let alike =
+                    |hit: &Hit| hits.iter().flatten().filter(|other| other.object == hit.object).count();
+                together += u32::from(hits.iter().flatten().any(|hit| alike(hit) > 3));
+            }
+        }
+    }
+    assert!(together > 1_000, "{together}");
+}
+
 /// Also towards points that hardly rise above the face, as far as they are said to rise clearly.
 #[test]
 fn no_segment_is_stopped_by_the_face_that_it_leaves() {
@@ -114,15 +160,15 @@ fn no_segment_is_stopped_by_the_face_that_it_leaves() {
             let at = world.intersection(&ray, &hit);
             let mut segments = RayPacket::splat(&ray);
             let mut left = [None; RayPacket::LANES];
-            for lane in 0..RayPacket::LANES {
-                let height = 10.0_f64.powf(random.between(-18.0, 0.0));
-                let across =
-                    at.geometric_normal.cross(random.point(1.0)) * 10.0_f64.powf(random.between(-4.0, 1.0));
+            for (lane, left) in left.iter_mut().enumerate() {
+                let height = portable::pow(10.0, random.between(-18.0, 0.0));
+                let across = at.geometric_normal.cross(random.point(1.0))
+                    * portable::pow(10.0, random.between(-4.0, 1.0));
                 let target = at.point + across + at.facing_geometric_normal() * height;
                 segments.set(lane, &at.segment_to(target));
-                left[lane] = at.face_left_for(target);
-                known += u32::from(left[lane].is_some());
-                grazing += u32::from(left[lane].is_some() && height < 1e-9 * across.length());
+                *left = at.face_left_for(target);
+                known += u32::from(left.is_some());
+                grazing += u32::from(left.is_some() && height < 1e-9 * across.length());
             }
             let occluded = world.occluded_packet(&segments, 0xffff, &left);
             for lane in 0..RayPacket::LANES {
