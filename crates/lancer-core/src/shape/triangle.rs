@@ -170,6 +170,19 @@ impl<'a> Canonical<'a> {
     }
 }
 
+/// Where each ray of a packet meets a triangle of its own, with t in (0, `t_max`): the canonical test; infinite where it
+/// does not.
+#[inline(always)]
+pub(crate) fn nearest(rays: &RayPacket, triangles: &Corners<3>) -> [f64; LANES] {
+    let mut nearest = [f64::INFINITY; LANES];
+    for (lane, nearest) in nearest.iter_mut().enumerate() {
+        let ray = rays.ray(lane);
+        let t = ShearedRay::new(&ray).meet(&triangles.lane(lane)).t;
+        *nearest = if (t > 0.0) & (t < ray.t_max) { t } else { f64::INFINITY };
+    }
+    nearest
+}
+
 /// The surface at a hit with triangle `primitive` of `mesh`.
 ///
 /// The shading normal is the interpolated vertex normal, turned to the geometric one's side; the texture
@@ -231,22 +244,31 @@ pub(crate) fn surfaces(
     }
 }
 
-/// `N` numbers at each corner of the triangles that rays of a packet have hit. By corner, number and lane.
-struct Corners<const N: usize>([[[f32; LANES]; N]; 3]);
+/// `N` numbers at each corner of a triangle, for each ray of a packet. By corner, number and lane.
+pub(crate) struct Corners<const N: usize>([[[f32; LANES]; N]; 3]);
 
 impl<const N: usize> Corners<N> {
+    /// Triangles of which all numbers are 0: no ray meets them.
+    pub(crate) const ZERO: Self = Self([[[0.0; LANES]; N]; 3]);
+
     #[inline(always)]
     fn gather(mesh: &Mesh, triangles: &[u32; LANES], of_vertices: &[[f32; N]]) -> Self {
-        let mut corners = [[[0.0; LANES]; N]; 3];
+        let mut corners = Self::ZERO;
         for (lane, &triangle) in triangles.iter().enumerate() {
-            let vertices = mesh.data().indices[triangle as usize];
-            for (corner, vertex) in corners.iter_mut().zip(vertices) {
-                for (lanes, number) in corner.iter_mut().zip(of_vertices[vertex as usize]) {
-                    lanes[lane] = number;
-                }
+            let [a, b, c] = mesh.data().indices[triangle as usize];
+            let of = |vertex: u32| of_vertices[vertex as usize];
+            corners.put(lane, &[of(a), of(b), of(c)]);
+        }
+        corners
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, lane: usize, triangle: &[[f32; N]; 3]) {
+        for (corner, numbers) in self.0.iter_mut().zip(triangle) {
+            for (lanes, number) in corner.iter_mut().zip(numbers) {
+                lanes[lane] = *number;
             }
         }
-        Self(corners)
     }
 
     #[inline(always)]

@@ -17,7 +17,7 @@ use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
 use crate::geometry::{Bounds, RayPacket};
 use crate::shape::Hit;
-use crate::shape::triangle::{Canonical, Nearest};
+use crate::shape::triangle::{self, Canonical, Corners, Nearest};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16};
@@ -30,6 +30,9 @@ pub(crate) type Lane = [f32; LANES];
 /// Where this many rays or fewer go one way, they go on one by one: eight boxes for one ray then do more than sixteen
 /// rays for one box, most of them idle.
 const ALONE: u32 = 2;
+
+/// So many exact tests are worth vector code. Untuned.
+const TOGETHER: u32 = 3;
 
 /// The end of a ray that wants nothing more.
 pub(crate) const DONE: f32 = -1.0;
@@ -365,7 +368,8 @@ pub(super) fn intersect<S: Simd>(
     let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
     let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
     let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
-    let mut hits = [None; LANES];
+    let mut ends = packet.end;
+    let mut searched = 0;
     while let Some((group, backward)) = packet.octant(&mut open) {
         if group.count_ones() <= ALONE {
             left_over |= group;
@@ -373,18 +377,58 @@ pub(super) fn intersect<S: Simd>(
         }
         let mut end = packet.ends_of(group);
         walk_packet(simd, &tree.nodes, packet, group, backward, &mut end, &mut search);
-        left_over |= search.left_over;
-        for lane in bits(group & !search.left_over) {
-            let candidates = &mut search.candidates[lane];
-            if !candidates.is_empty() {
-                let ray = rays.ray(lane);
-                let mut nearest = Nearest::new(&ray);
-                candidates.settle(tree, &mut nearest, end[lane]);
-                hits[lane] = nearest.found();
-            }
+        searched |= group;
+        for lane in bits(group) {
+            ends[lane] = end[lane];
         }
     }
-    (hits, left_over)
+    let NearestSearch { mut candidates, left_over: overflown, .. } = search;
+    (settle(tree, rays, &mut candidates, &ends, searched & !overflown), left_over | overflown)
+}
+
+/// Lets the canonical test decide between the candidates of the rays `wanted`: for all rays at once that have but one,
+/// as most do.
+#[inline(always)]
+fn settle(
+    tree: &TriangleTree,
+    rays: &RayPacket,
+    candidates: &mut [Candidates; LANES],
+    ends: &Lane,
+    wanted: u32,
+) -> [Option<Hit>; LANES] {
+    let mut hits = [None; LANES];
+    let mut ids = [0; LANES];
+    let mut triangles = Corners::ZERO;
+    let mut single = bits(wanted)
+        .filter(|&lane| candidates[lane].only().is_some())
+        .fold(0, |single, lane| single | 1_u32 << lane);
+    if single.count_ones() < TOGETHER {
+        single = 0;
+    }
+    for lane in bits(single) {
+        if let Some(candidate) = candidates[lane].only() {
+            let block = &tree.blocks[candidate.block as usize];
+            triangles.put(lane, &block.triangle(candidate.triangle as usize));
+            ids[lane] = block.ids[candidate.triangle as usize];
+        }
+    }
+    if single != 0 {
+        let nearest = triangle::nearest(rays, &triangles);
+        for lane in bits(single) {
+            let hit = Hit { t: nearest[lane], primitive: ids[lane] };
+            hits[lane] = (hit.t < f64::INFINITY).then_some(hit);
+        }
+    }
+    for lane in bits(wanted & !single) {
+        let candidates = &mut candidates[lane];
+        if !candidates.is_empty() {
+            let ray = rays.ray(lane);
+            let mut nearest = Nearest::new(&ray);
+            candidates.settle(tree, &mut nearest, ends[lane]);
+            hits[lane] = nearest.found();
+        }
+    }
+    hits
 }
 
 /// A search for nearest hits on its way.

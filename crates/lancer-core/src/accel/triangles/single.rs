@@ -42,6 +42,14 @@ impl Candidates {
         self.0.try_push(candidate).is_ok()
     }
 
+    /// The candidate, if there is but one.
+    pub(super) fn only(&self) -> Option<Candidate> {
+        match self.0[..] {
+            [candidate] => Some(candidate),
+            _ => None,
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
