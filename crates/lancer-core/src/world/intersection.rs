@@ -111,14 +111,13 @@ impl Intersection {
 }
 
 impl World {
-    /// The surfaces at hits of a packet, by lane: each as [`World::intersection`] finds it.
+    /// Puts the surfaces at hits of a packet into `found`, which is empty: each as [`World::intersection`] finds it.
     pub(crate) fn intersections(
         &self,
         rays: &RayPacket,
         hits: &[Option<Hit>; LANES],
         found: &mut [Option<Intersection>; LANES],
     ) {
-        *found = [None; LANES];
         for lane in 0..LANES {
             let Some(hit) = hits[lane].filter(|_| found[lane].is_none()) else { continue };
             let alike = |other: &Option<Hit>| other.filter(|other| other.object == hit.object);

@@ -3,7 +3,7 @@
 use super::geometry::Geometry;
 use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
+use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
 use crate::geometry::{Placement, Ray, RayPacket};
 use crate::shape::{self, plane, sphere};
@@ -112,7 +112,7 @@ impl<F: FnMut(Child, u32, &mut [f64; LANES]) -> u32> Visitor for Leaves<'_, F> {
     const ALONE: u32 = 0;
 
     #[inline(always)]
-    fn visit(&mut self, leaf: Child, lanes: u32, end: &mut Lane) {
+    fn visit(&mut self, leaf: Child, lanes: u32, _beam: &Beam, end: &mut Lane) {
         let open = (self.visit)(leaf, lanes, &mut self.t_max);
         for lane in bits(lanes) {
             let wanted = open >> lane & 1 == 1;
@@ -138,7 +138,8 @@ impl Object {
             }
             return hits;
         }
-        let local = RayPacket { t_max: *up_to, ..self.rays_to_object(level, rays) };
+        let mut local = self.rays_to_object(level, rays);
+        local.t_max = *up_to;
         if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             return tree.intersect_packet(&local, wanted);
         }

@@ -15,7 +15,7 @@ mod tests;
 mod walk;
 
 pub(crate) use fan::Receiver;
-pub(crate) use packet::{DONE, Lane, NarrowPacket, Visitor, walk_packet};
+pub(crate) use packet::{Beam, DONE, Lane, NarrowPacket, Visitor, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 

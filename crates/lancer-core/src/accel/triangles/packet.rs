@@ -153,7 +153,7 @@ impl NarrowPacket {
 }
 
 /// All rays of a group at once: the intervals of their origins and inverses.
-struct Beam {
+pub(crate) struct Beam {
     /// By axis: 1 or -1, the sign of the directions.
     sign: [f32; 3],
     /// What is added to a plane's coordinate times `sign`: for the planes that the rays enter by, and leave by.
@@ -202,7 +202,7 @@ pub(crate) trait Visitor {
 
     /// Some rays meet a leaf; or a few meet any child. May lower their ends; a ray whose end is [`DONE`] is not asked
     /// for again.
-    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane);
+    fn visit(&mut self, child: Child, lanes: u32, beam: &Beam, end: &mut Lane);
 }
 
 /// A box to look into: a child of a node, by its place there.
@@ -226,13 +226,13 @@ pub(crate) fn walk_packet<S: Simd, V: Visitor>(
     end: &mut Lane,
     visitor: &mut V,
 ) {
-    let beam = Beam::new(packet, group, backward);
+    let beam = &Beam::new(packet, group, backward);
     let mut stack = ArrayVec::<Waiting, STACK>::new();
     let mut furthest = furthest(simd, end);
     let mut node = 0;
     loop {
         let waiting = stack.len();
-        let (enter, mut met) = beam_meets(simd, &nodes[node], &beam, furthest);
+        let (enter, mut met) = beam_meets(simd, &nodes[node], beam, furthest);
         while met != 0 {
             let place = met.trailing_zeros();
             met &= met - 1;
@@ -258,7 +258,7 @@ pub(crate) fn walk_packet<S: Simd, V: Visitor>(
                 continue;
             }
             if next.child.is_leaf() || lanes.count_ones() <= V::ALONE {
-                visitor.visit(next.child, lanes, end);
+                visitor.visit(next.child, lanes, beam, end);
                 furthest = self::furthest(simd, end);
                 if furthest < 0.0 {
                     return;
@@ -295,6 +295,31 @@ fn beam_meets<S: Simd>(simd: S, node: &WideNode, beam: &Beam, furthest: f32) -> 
         leave = leave.min((far * least).max(far * most));
     }
     (enter.into(), enter.simd_le(leave).to_bitmask() as u32)
+}
+
+/// Which triangles of a block have boxes that some of the rays may meet, at any distance.
+#[inline(always)]
+fn beam_meets_triangles<S: Simd>(simd: S, block: &Block, beam: &Beam, count: usize) -> u32 {
+    let splat = |x: f32| f32x4::splat(simd, x);
+    let mut enter = splat(0.0);
+    let mut leave = splat(f32::INFINITY);
+    for axis in 0..3 {
+        let sign = splat(beam.sign[axis]);
+        let corner = |corner: usize| f32x4::load_array_ref(simd, &block.corners[corner][axis]) * sign;
+        let (a, b, c) = (corner(0), corner(1), corner(2));
+        let near = a.min(b).min(c) + splat(beam.enter_offset[axis]);
+        let far = a.max(b).max(c) + splat(beam.leave_offset[axis]);
+        let (least, most) = (splat(beam.least[axis]), splat(beam.most[axis]));
+        enter = enter.max((near * least).min(near * most));
+        leave = leave.min((far * least).max(far * most));
+    }
+    enter.simd_le(leave).to_bitmask() as u32 & ((1 << count) - 1)
+}
+
+/// The blocks of a leaf, each with the number of its triangles.
+#[inline(always)]
+fn blocks_of(leaf: Child) -> impl Iterator<Item = (usize, usize)> {
+    (0..leaf.count().div_ceil(BLOCK)).map(move |i| (leaf.first() + i, (leaf.count() - i * BLOCK).min(BLOCK)))
 }
 
 /// Which rays meet a box.
@@ -382,8 +407,8 @@ pub(super) fn intersect<S: Simd>(
             ends[lane] = end[lane];
         }
     }
-    let NearestSearch { mut candidates, left_over: overflown, .. } = search;
-    (settle(tree, rays, &mut candidates, &ends, searched & !overflown), left_over | overflown)
+    let overflown = search.left_over;
+    (settle(tree, rays, &mut search.candidates, &ends, searched & !overflown), left_over | overflown)
 }
 
 /// Lets the canonical test decide between the candidates of the rays `wanted`: for all rays at once that have but one,
@@ -445,25 +470,27 @@ impl<S: Simd> Visitor for NearestSearch<'_, S> {
     const ALONE: u32 = ALONE;
 
     #[inline(always)]
-    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane) {
+    fn visit(&mut self, child: Child, lanes: u32, beam: &Beam, end: &mut Lane) {
         if few(child, lanes) {
             for lane in bits(lanes) {
                 self.go_alone(child, lane, &mut end[lane]);
             }
             return;
         }
-        for i in 0..child.count() {
-            let (block, triangle) = (child.first() + i / BLOCK, i % BLOCK);
-            let verdict = test(self.simd, self.packet, &self.tree.blocks[block], triangle, lanes, end);
-            if verdict.maybe == 0 {
-                continue;
-            }
-            let (earliest, latest) = range(self.simd, &verdict);
-            for lane in bits(verdict.maybe) {
-                let latest = (verdict.sure >> lane & 1 == 1).then_some(latest[lane]);
-                let (block, triangle) = (block as u32, triangle as u32);
-                let candidate = Candidate { block, triangle, earliest: earliest[lane] };
-                self.add(lane, candidate, latest, &mut end[lane]);
+        for (block, count) in blocks_of(child) {
+            let met = beam_meets_triangles(self.simd, &self.tree.blocks[block], beam, count);
+            for triangle in bits(met) {
+                let verdict = test(self.simd, self.packet, &self.tree.blocks[block], triangle, lanes, end);
+                if verdict.maybe == 0 {
+                    continue;
+                }
+                let (earliest, latest) = range(self.simd, &verdict);
+                for lane in bits(verdict.maybe) {
+                    let latest = (verdict.sure >> lane & 1 == 1).then_some(latest[lane]);
+                    let (block, triangle) = (block as u32, triangle as u32);
+                    let candidate = Candidate { block, triangle, earliest: earliest[lane] };
+                    self.add(lane, candidate, latest, &mut end[lane]);
+                }
             }
         }
     }
@@ -545,7 +572,7 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
     const ALONE: u32 = ALONE;
 
     #[inline(always)]
-    fn visit(&mut self, child: Child, lanes: u32, end: &mut Lane) {
+    fn visit(&mut self, child: Child, lanes: u32, beam: &Beam, end: &mut Lane) {
         let mut occluded = 0;
         if few(child, lanes) {
             for lane in bits(lanes) {
@@ -555,16 +582,18 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
                 occluded |= u32::from(hit) << lane;
             }
         } else {
-            for i in 0..child.count() {
-                let (block, triangle) = (&self.tree.blocks[child.first() + i / BLOCK], i % BLOCK);
-                let verdict = test(self.simd, self.packet, block, triangle, lanes & !occluded, end);
-                occluded |= verdict.sure;
-                for lane in bits(verdict.maybe & !verdict.sure) {
-                    if self.own[lane] == Some(block.ids[triangle]) {
-                        continue;
+            for (block, count) in blocks_of(child) {
+                let block = &self.tree.blocks[block];
+                for triangle in bits(beam_meets_triangles(self.simd, block, beam, count)) {
+                    let verdict = test(self.simd, self.packet, block, triangle, lanes & !occluded, end);
+                    occluded |= verdict.sure;
+                    for lane in bits(verdict.maybe & !verdict.sure) {
+                        if self.own[lane] == Some(block.ids[triangle]) {
+                            continue;
+                        }
+                        let meets = Canonical::new(&self.rays.ray(lane)).hits(&block.triangle(triangle));
+                        occluded |= u32::from(meets) << lane;
                     }
-                    let meets = Canonical::new(&self.rays.ray(lane)).hits(&block.triangle(triangle));
-                    occluded |= u32::from(meets) << lane;
                 }
             }
         }
