@@ -217,6 +217,9 @@ impl<'w> Whitted<'w> {
 /// So many rays are traced together; fewer go one by one.
 const WORTH_A_PACKET: u32 = 4;
 
+/// What a camera ray is, and its throughput.
+const CAMERA: (RayKind, Rgb) = (RayKind::Primary, Rgb::WHITE);
+
 /// The trees of camera rays on their way, in step: the next ray of each is traced together.
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
@@ -245,15 +248,15 @@ struct Arrival<'a> {
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
     fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
         let mut radiances = [Rgb::BLACK; LANES];
-        let path = |&key: &Key| Path {
-            kind: RayKind::Primary,
-            throughput: Rgb::WHITE,
-            depth: self.integrator.depth,
-            key,
-            media: media.clone(),
-        };
+        let hits = self.intersect(RayId(0), first.packet(), first.lanes(), &mut radiances, |_| CAMERA);
+        if hits.iter().all(Option::is_none) {
+            return radiances;
+        }
+        let (kind, throughput) = CAMERA;
+        let depth = self.integrator.depth;
+        let path = |&key: &Key| Path { kind, throughput, depth, key, media: media.clone() };
         let mut paths: ArrayVec<Path, LANES> = first.keys().iter().map(path).collect();
-        self.step(RayId(0), first.packet(), first.lanes(), &paths, &mut radiances);
+        self.shade(RayId(0), first.packet(), &hits, &paths, &mut radiances);
         if self.pending.iter().all(VecDeque::is_empty) {
             return radiances;
         }
@@ -274,7 +277,9 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
                 self.pending.iter_mut().for_each(VecDeque::clear);
                 break;
             }
-            self.step(RayId(id), &rays, wanted, &paths, &mut radiances);
+            let brings = |lane: usize| (paths[lane].kind, paths[lane].throughput);
+            let hits = self.intersect(RayId(id), &rays, wanted, &mut radiances, brings);
+            self.shade(RayId(id), &rays, &hits, &paths, &mut radiances);
         }
         radiances
     }
@@ -287,29 +292,46 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
     }
 
-    /// The local terms of one ray of each tree; what they reflect and refract is queued.
-    fn step(
+    /// What one ray of each tree hits. Those that hit nothing are done with; `brings` tells of a ray what it is, and its
+    /// throughput.
+    fn intersect(
         &mut self,
         id: RayId,
         rays: &RayPacket,
         wanted: u32,
+        radiances: &mut [Rgb; LANES],
+        brings: impl Fn(usize) -> (RayKind, Rgb),
+    ) -> [Option<Hit>; LANES] {
+        let hits = self.integrator.intersect(rays, wanted, self.tally);
+        let background = self.integrator.world.background();
+        for lane in bits(wanted) {
+            let (kind, throughput) = brings(lane);
+            self.count(kind);
+            if hits[lane].is_none() {
+                self.listeners[lane].begin_ray(id, kind, throughput, &rays.ray(lane));
+                self.listeners[lane].background(background);
+                radiances[lane] += background * throughput;
+            }
+        }
+        hits
+    }
+
+    /// The local terms where rays have hit; what they reflect and refract is queued.
+    fn shade(
+        &mut self,
+        id: RayId,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
         paths: &[Path],
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;
-        let hits = self.integrator.intersect(rays, wanted, self.tally);
         let mut met = [None; LANES];
-        world.intersections(rays, &hits, &mut met);
+        world.intersections(rays, hits, &mut met);
         let mut arrivals = ArrayVec::<Arrival, LANES>::new();
-        for (lane, at) in met.iter_mut().enumerate().filter(|(lane, _)| wanted >> lane & 1 == 1) {
+        for (lane, at) in met.iter_mut().enumerate() {
+            let Some(at) = at else { continue };
             let (path, ray) = (&paths[lane], rays.ray(lane));
-            self.count(path.kind);
-            let Some(at) = at else {
-                self.listeners[lane].begin_ray(id, path.kind, path.throughput, &ray);
-                self.listeners[lane].background(world.background());
-                radiances[lane] += world.background() * path.throughput;
-                continue;
-            };
             let touching = world.see(&ray, at, self.tally);
             let material = world.material(at.material);
             let point = ShadingPoint {
