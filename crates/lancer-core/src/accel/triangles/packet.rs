@@ -166,33 +166,39 @@ pub(crate) struct Beam {
 
 impl Beam {
     #[inline(always)]
-    fn new(packet: &NarrowPacket, group: u32, backward: [bool; 3]) -> Self {
+    fn new<S: Simd>(simd: S, packet: &NarrowPacket, group: u32, backward: [bool; 3]) -> Self {
         let mut beam = Self {
             sign: [1.0; 3],
             enter_offset: [0.0; 3],
             leave_offset: [0.0; 3],
-            least: [f32::INFINITY; 3],
+            least: [0.0; 3],
             most: [0.0; 3],
         };
         // A ray's margin holds for its own slab test; half of it more, for those of the beam.
-        let margin = 1.5 * bits(group).map(|lane| packet.margin[lane]).fold(0.0, f32::max);
+        let margin = 1.5 * of_group(simd, &packet.margin, group).reduce_max();
         for (axis, backward) in backward.into_iter().enumerate() {
             let sign = if backward { -1.0 } else { 1.0 };
-            let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-            for lane in bits(group) {
-                let origin = packet.origin[axis][lane] * sign;
-                let inverse = packet.inverse[axis][lane] * sign;
-                low = low.min(origin);
-                high = high.max(origin);
-                beam.least[axis] = beam.least[axis].min(inverse);
-                beam.most[axis] = beam.most[axis].max(inverse);
-            }
+            let origin = of_group(simd, &packet.origin[axis], group) * sign;
+            let inverse = of_group(simd, &packet.inverse[axis], group) * sign;
             beam.sign[axis] = sign;
-            beam.enter_offset[axis] = -(high + margin);
-            beam.leave_offset[axis] = margin - low;
+            beam.enter_offset[axis] = -(origin.reduce_max() + margin);
+            beam.leave_offset[axis] = margin - origin.reduce_min();
+            beam.least[axis] = inverse.reduce_min();
+            beam.most[axis] = inverse.reduce_max();
         }
         beam
     }
+}
+
+/// The values of a group's rays; those of the others are like one of them.
+#[inline(always)]
+fn of_group<S: Simd>(simd: S, values: &Lane, group: u32) -> f32x16<S> {
+    let first = values[group.trailing_zeros() as usize];
+    let mut of_group = *values;
+    for (lane, value) in of_group.iter_mut().enumerate() {
+        *value = if group >> lane & 1 == 1 { *value } else { first };
+    }
+    f32x16::load_array_ref(simd, &of_group)
 }
 
 /// Who is shown what rays meet. A trait and not a closure, since vector code must be inlined.
@@ -226,7 +232,7 @@ pub(crate) fn walk_packet<S: Simd, V: Visitor>(
     end: &mut Lane,
     visitor: &mut V,
 ) {
-    let beam = &Beam::new(packet, group, backward);
+    let beam = &Beam::new(simd, packet, group, backward);
     let mut stack = ArrayVec::<Waiting, STACK>::new();
     let mut furthest = furthest(simd, end);
     let mut node = 0;
