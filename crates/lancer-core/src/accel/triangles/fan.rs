@@ -8,26 +8,27 @@
 //!
 //! Source of the masks: Laine, Karras, "Two methods for fast ray-cast ambient occlusion" (EGSR 2010).
 
+mod pairs;
+
 use super::TriangleTree;
-use super::block::{BLOCK, Block, TestRays};
+use super::block::{BLOCK, Block};
 use super::lanes::{cross, dot, largest, load3, splat3, sub};
-use super::ray::{
-    LEAST_COMPONENT, NarrowRay, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened,
-};
-use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
+use super::ray::{LEAST_COMPONENT, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened};
+use super::walk::{STACK, nearest_last};
 use crate::accel::bvh::{Child, WIDTH, WideNode};
 use crate::accel::tally::Tally;
 use crate::geometry::{Bounds, DMat3, DVec3, DirectionFan};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, i32x4, i32x8};
+use pairs::Pairs;
 
 const FAN: usize = DirectionFan::CAPACITY;
 
 /// Directions tested at once.
 const LANES: usize = 16;
 
-/// Where this many directions or fewer are left to a node, they go on one by one: eight boxes for one ray then do
+/// Where this many directions or fewer are left to a node, each goes on by itself: eight boxes for one ray then do
 /// more than sixteen directions for one box, most of them idle.
 const ALONE: u32 = 12;
 
@@ -60,12 +61,13 @@ const LEAST_REACH: f64 = 1e-12;
 struct Fan {
     direction: [[f32; FAN]; 3],
     inverse: [[f32; FAN]; 3],
+    /// As those of a [`super::ray::NarrowRay`].
+    enter_offset: [[f32; FAN]; 3],
+    leave_offset: [[f32; FAN]; 3],
     point: [f32; 3],
     point_rest: [f32; 3],
     /// How far the point may lie from the true one, and all `f64` rounding.
     error: f32,
-    /// See [`NarrowRay`].
-    margin: f32,
     normal: [f32; 3],
     reach: f32,
     lowest: f32,
@@ -79,8 +81,12 @@ impl Fan {
         let point = receiver.point;
         let size = size_of(bounds).max(point.abs().max_element());
         let error = size * (1024.0 * f64::EPSILON);
+        let narrow = narrowed(point);
+        let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + error as f32;
         let mut direction = [[0.0; FAN]; 3];
         let mut inverse = [[0.0; FAN]; 3];
+        let mut enter_offset = [[0.0; FAN]; 3];
+        let mut leave_offset = [[0.0; FAN]; 3];
         let columns = receiver.from_world.to_cols_array();
         let [x, y, z] = &directions.components;
         let used = directions.count.next_multiple_of(LANES);
@@ -93,36 +99,27 @@ impl Fan {
                 let component = direction[axis][i];
                 inverse[axis][i] = 1.0 / component.abs().max(LEAST_COMPONENT as f32).copysign(component);
             }
+            for i in 0..used {
+                let base = -narrow[axis] * inverse[axis][i];
+                let slack = margin * inverse[axis][i].abs();
+                enter_offset[axis][i] = base - slack;
+                leave_offset[axis][i] = base + slack;
+            }
         }
-        let narrow = narrowed(point);
         Self {
             direction,
             inverse,
+            enter_offset,
+            leave_offset,
             point: narrow,
             point_rest: narrowed(point - widened(narrow)),
             error: error as f32,
-            margin: 24.0 * UNIT_ROUNDOFF * size as f32 + error as f32,
             normal: narrowed(receiver.normal),
             reach: (receiver.reach.min(1e3 * size) * (1.0 + 1e-6)) as f32,
             lowest: directions.lowest as f32,
             per_step: (1.0 / directions.step) as f32,
             own: receiver.own.unwrap_or(u32::MAX),
         }
-    }
-
-    /// One direction as a ray.
-    #[inline(always)]
-    fn ray(&self, i: usize) -> NarrowRay {
-        let of = |v: &[[f32; FAN]; 3]| [v[0][i], v[1][i], v[2][i]];
-        NarrowRay::from_narrow(
-            self.point,
-            self.point_rest,
-            of(&self.direction),
-            of(&self.inverse),
-            self.margin,
-            self.error,
-            self.reach,
-        )
     }
 }
 
@@ -142,6 +139,7 @@ pub(super) fn occluded<S: Simd>(
     let fan = &Fan::new(receiver, directions, &tree.bounds);
     let mut open = wanted;
     let mut stack = ArrayVec::<Waiting, STACK>::new();
+    let mut few = Pairs::EMPTY;
     stack.push(Waiting { child: Child::inner(0), mask: wanted, distance: 0.0 });
     while let Some(Waiting { child, mask, .. }) = stack.pop() {
         let mask = mask & open;
@@ -157,22 +155,18 @@ pub(super) fn occluded<S: Simd>(
                 left = left.saturating_sub(BLOCK);
             }
         } else if mask.count_ones() <= ALONE {
-            let mut rest = mask;
-            while rest != 0 {
-                let i = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                if alone(simd, tree, fan, child, i, tally, &mut decide) {
-                    open &= !(1 << i);
-                }
+            if few.add(child, mask) {
+                open &= !few.follow(simd, tree, fan, tally, &mut decide);
             }
         } else {
             tally.node();
             node_of_fan(simd, fan, &tree.nodes[child.node()], mask, &mut stack);
         }
         if open == 0 {
-            break;
+            return wanted;
         }
     }
+    open &= !few.follow(simd, tree, fan, tally, &mut decide);
     wanted & !open
 }
 
@@ -500,66 +494,6 @@ impl Cone {
             }
         }
         (sure, unsure)
-    }
-}
-
-/// One direction through the part of the tree below `start`.
-#[inline(always)]
-fn alone<S: Simd>(
-    simd: S,
-    tree: &TriangleTree,
-    fan: &Fan,
-    start: Child,
-    i: usize,
-    tally: &impl Tally,
-    decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
-) -> bool {
-    let ray = fan.ray(i);
-    let block_ray = TestRays::new(simd, &ray);
-    let sure_end = fan.reach * (1.0 - 1e-5);
-    let mut search =
-        Alone { simd, tree, fan, ray: &ray, block_ray, sure_end, i, tally, decide, found: false };
-    walk_from::<S, true>(simd, &tree.nodes, start, &ray, tally, &mut search);
-    search.found
-}
-
-/// The search of one direction on its way.
-struct Alone<'a, S: Simd, T, D> {
-    simd: S,
-    tree: &'a TriangleTree,
-    fan: &'a Fan,
-    ray: &'a NarrowRay,
-    block_ray: TestRays<f32x4<S>>,
-    sure_end: f32,
-    i: usize,
-    tally: &'a T,
-    decide: &'a mut D,
-    found: bool,
-}
-
-impl<S: Simd, T: Tally, D: FnMut(usize, &[[f32; 3]; 3]) -> bool> LeafVisitor for Alone<'_, S, T, D> {
-    #[inline(always)]
-    fn leaf(&mut self, leaf: Child) -> f32 {
-        let mut left = leaf.count();
-        for block in &self.tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
-            self.tally.triangles(left.min(BLOCK));
-            let verdict = block.test(self.simd, &self.block_ray, left.min(BLOCK), self.ray.end);
-            let mut maybe = verdict.maybe;
-            while maybe != 0 {
-                let lane = maybe.trailing_zeros() as usize;
-                maybe &= maybe - 1;
-                if block.ids[lane] == self.fan.own {
-                    continue;
-                }
-                let sure = verdict.sure >> lane & 1 == 1 && verdict.latest(lane) < self.sure_end;
-                if sure || (self.decide)(self.i, &block.triangle(lane)) {
-                    self.found = true;
-                    return -1.0;
-                }
-            }
-            left = left.saturating_sub(BLOCK);
-        }
-        self.ray.end
     }
 }
 

@@ -51,6 +51,21 @@ fn needles() -> MeshData {
     data
 }
 
+/// Slivers between opposite corners of a cube: the box of each, and so of each node over them, is the whole cube.
+fn diagonals(count: u32) -> MeshData {
+    let mut random = Random::new(8);
+    let mut data = MeshData::default();
+    for i in 0..count {
+        let corner = DVec3::new(1.0, [1.0, -1.0][i as usize % 2], [1.0, -1.0][i as usize / 2 % 2]);
+        let near = |random: &mut Random| random.point(0.01).as_vec3();
+        let ends =
+            [corner.as_vec3(), corner.as_vec3() + near(&mut random), -corner.as_vec3() + near(&mut random)];
+        data.positions.extend(ends.map(|end| end.to_array()));
+        data.indices.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    data
+}
+
 fn meshes() -> Vec<Mesh> {
     let mut meshes = Vec::new();
     for data in [ball(12, 24), grid(12), needles(), soup(3, 400).data().clone()] {
@@ -258,6 +273,32 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
             }
         }
     }
+}
+
+#[test]
+fn the_few_directions_that_meet_a_crowd_of_boxes_find_what_rays_do() {
+    let mesh = Mesh::new(diagonals(60_000)).unwrap();
+    let mut random = Random::new(4);
+    let mut hits = [0; 2];
+    for level in levels() {
+        let tree = build(&mesh, level);
+        for _ in 0..10 {
+            let normal = random.direction();
+            let point = normal * -random.between(4.0, 5.0);
+            let fan = fan_around(normal, &mut random);
+            let from_world = crate::geometry::DMat3::IDENTITY;
+            let receiver = Receiver { point, normal, from_world, reach: 10.0, own: None };
+            let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: 10.0 };
+            let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
+            let found = tree.occluded_fan(&receiver, &fan, fan.all(), &Uncounted, decide).unwrap();
+            for i in 0..fan.count {
+                let expected = tree.occluded(&ray(i), &Uncounted);
+                assert_eq!(found >> i & 1 == 1, expected, "{level:?} {:?}", ray(i));
+                hits[usize::from(expected)] += 1;
+            }
+        }
+    }
+    assert!(hits[0] > 500 && hits[1] > 0, "{hits:?}");
 }
 
 fn fan_around(normal: DVec3, random: &mut Random) -> DirectionFan {
