@@ -5,6 +5,7 @@
 //! its samples; `... -- peers` times whole processes against other renderers; `... -- window` watches
 //! the window. README.md says what to install.
 
+mod chart;
 mod convergence;
 mod embree;
 mod figures;
@@ -61,6 +62,14 @@ enum Command {
         images: Option<PathBuf>,
         #[command(flatten)]
         versus: Versus,
+    },
+    /// Draws the frames of a raw run that `embree --raw` has kept, as an SVG file.
+    Chart {
+        /// The run.
+        run: PathBuf,
+        /// The chart.
+        #[arg(long, default_value = "docs/images/performance-frames.svg")]
+        output: PathBuf,
     },
     /// How building and tracing grow with the scene, for Lancer and Embree.
     Scale {
@@ -174,6 +183,7 @@ fn main() -> Result<(), Failure> {
         Command::Embree { tables, images, versus } => {
             versus::measure(&versus::Plan { images, ..versus.plan(tables) })
         }
+        Command::Chart { run, output } => chart::draw(&run, &output),
         Command::Scale { most, versus } => versus::measure_scale(&versus.plan(Vec::new()), most),
         Command::FirstLight { versus } => versus::measure_first_light(&versus.plan(Vec::new())),
         Command::Convergence { output, data } => convergence::measure(&output, data.as_deref()),
