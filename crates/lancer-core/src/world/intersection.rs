@@ -100,9 +100,9 @@ impl Intersection {
         Ray::between(start, target)
     }
 
-    /// The face that the point lies on, where it cannot be met by [`Intersection::segment_to`] that target: it starts
-    /// off the face, and rises. None where the target lies so near to the face's plane that rounding could hide which
-    /// side it is on.
+    /// The face that the point lies on, if the target stands clearly off the plane that touches it there: a flat face, as
+    /// a triangle is, cannot then be met by [`Intersection::segment_to`] that target, which starts off the face and rises.
+    /// None where rounding could hide on which side of the plane the target is.
     pub fn face_left_for(&self, target: DVec3) -> Option<Face> {
         let height = self.geometric_normal.dot(target - self.point).abs();
         let uncertainty = self.geometric_normal.abs().dot(self.point_error);

@@ -36,8 +36,9 @@ impl World {
         best
     }
 
-    /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells. `left` are faces that rays
-    /// start from and cannot meet: knowing them saves the exact test of each, which is too close to tell otherwise.
+    /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells. `left` are the faces that
+    /// rays start from, as [`Intersection::face_left_for`](super::Intersection::face_left_for) knows them: triangles
+    /// among them need no test, which would be too close to tell.
     pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
         let mut occluded = 0;
         let visited = self.visit_objects_of_packet(rays, wanted, |level, id, object, lanes, _| {
@@ -149,7 +150,7 @@ impl Object {
         hits
     }
 
-    /// Which of the rays `wanted` it stops; none by its own face `own`.
+    /// Which of the rays `wanted` it stops; none of a mesh's by the ray's own triangle.
     fn occluded_packet(
         &self,
         level: Level,
