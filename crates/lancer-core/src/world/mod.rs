@@ -293,7 +293,7 @@ impl World {
                         narrow.up_to(t_max)
                     };
                     dispatch!(*level, simd => {
-                        walk::<_, true>(simd, tree.nodes(), &narrow, tally, &mut visit_leaf);
+                        walk(simd, tree.nodes(), &narrow, tally, &mut visit_leaf);
                     });
                 }
                 Narrowed::OutOfRange => self.visit_all_bounded(visit),

@@ -509,7 +509,7 @@ impl<S: Simd> NearestSearch<'_, S> {
         let block_ray = TestRays::new(self.simd, &ray);
         let (simd, nodes) = (self.simd, &self.tree.nodes);
         let mut visitor = Alone { search: self, block_ray, lane, end };
-        walk_from::<S, true>(simd, nodes, child, &ray, &Uncounted, &mut visitor);
+        walk_from(simd, nodes, child, &ray, &Uncounted, &mut visitor);
     }
 
     #[inline]

@@ -113,7 +113,7 @@ pub(super) fn intersect<S: Simd>(
         candidates: Candidates::default(),
         end: narrow.end,
     };
-    walk::<S, true>(simd, &tree.nodes, narrow, tally, &mut search);
+    walk(simd, &tree.nodes, narrow, tally, &mut search);
     let NearestSearch { mut candidates, mut nearest, end, .. } = search;
     if !candidates.is_empty() {
         candidates.settle(tree, nearest.get_or_insert_with(|| Nearest::new(ray)), end);
@@ -168,7 +168,7 @@ pub(super) fn occluded<S: Simd>(
     let block_ray = TestRays::new(simd, narrow);
     let canonical = Canonical::new(ray);
     let mut search = OcclusionSearch { simd, tree, narrow, block_ray, own, tally, canonical, found: false };
-    walk_from::<S, true>(simd, &tree.nodes, start, narrow, tally, &mut search);
+    walk_from(simd, &tree.nodes, start, narrow, tally, &mut search);
     search.found
 }
 

@@ -222,7 +222,7 @@ fn most_rays_are_settled_without_the_canonical_test() {
         let Narrowed::Ready(narrow) = NarrowRay::prepare(&ray, &tree.bounds) else { continue };
         dispatch!(tree.level, simd => {
             let block_ray = block::TestRays::new(simd, &narrow);
-            walk::<_, true>(simd, &tree.nodes, &narrow, &Uncounted, &mut |leaf: Child| {
+            walk(simd, &tree.nodes, &narrow, &Uncounted, &mut |leaf: Child| {
                 let mut left = leaf.count();
                 for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
                     let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);

@@ -25,21 +25,22 @@ impl<F: FnMut(Child) -> f32> LeafVisitor for F {
     }
 }
 
-/// Shows a visitor the leaves that a ray meets. With `NEAREST_FIRST`, leaves that are entered sooner come sooner, by the order of each node's children.
+/// Shows a visitor the leaves that a ray meets: those that are entered sooner come sooner, by the order of each node's
+/// children.
 #[inline(always)]
-pub(crate) fn walk<S: Simd, const NEAREST_FIRST: bool>(
+pub(crate) fn walk<S: Simd>(
     simd: S,
     nodes: &[WideNode],
     ray: &NarrowRay,
     tally: &impl Tally,
     visitor: &mut impl LeafVisitor,
 ) {
-    walk_from::<S, NEAREST_FIRST>(simd, nodes, Child::inner(0), ray, tally, visitor);
+    walk_from(simd, nodes, Child::inner(0), ray, tally, visitor);
 }
 
 /// As [`walk`], through the part of the hierarchy below `start`.
 #[inline(always)]
-pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
+pub(super) fn walk_from<S: Simd>(
     simd: S,
     nodes: &[WideNode],
     start: Child,
@@ -83,15 +84,11 @@ pub(super) fn walk_from<S: Simd, const NEAREST_FIRST: bool>(
                     let child = met.trailing_zeros() as usize;
                     met &= met - 1;
                     let mut other = (node.children[child], enter[child]);
-                    if NEAREST_FIRST {
-                        if other.1 < next.1 {
-                            std::mem::swap(&mut other, &mut next);
-                        }
-                        stack.push(other);
-                        nearest_last(&mut stack[waiting..], |&(_, enter)| enter);
-                    } else {
-                        stack.push(other);
+                    if other.1 < next.1 {
+                        std::mem::swap(&mut other, &mut next);
                     }
+                    stack.push(other);
+                    nearest_last(&mut stack[waiting..], |&(_, enter)| enter);
                 }
                 current = next.0;
                 continue;
