@@ -6,6 +6,7 @@
 
 use super::lanes::{add, cross, dot, largest, load3, splat3, sub};
 use super::ray::{NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
+use crate::accel::bvh::Child;
 use fearless_simd::f32x4;
 use fearless_simd::prelude::*;
 
@@ -21,6 +22,12 @@ pub(super) struct Block {
     /// By corner, then by axis, then by triangle.
     pub(super) corners: [[[f32; BLOCK]; 3]; 3],
     pub(super) ids: [u32; BLOCK],
+}
+
+/// The places of a leaf's blocks, each with the number of its triangles.
+#[inline(always)]
+pub(super) fn blocks_of(leaf: Child) -> impl Iterator<Item = (usize, usize)> {
+    (0..leaf.count().div_ceil(BLOCK)).map(move |i| (leaf.first() + i, (leaf.count() - i * BLOCK).min(BLOCK)))
 }
 
 /// What rays do with triangles, a bit for each pair of a ray and a triangle.

@@ -11,7 +11,7 @@
 mod pairs;
 
 use super::TriangleTree;
-use super::block::{BLOCK, Block};
+use super::block::{BLOCK, Block, blocks_of};
 use super::lanes::{cross, dot, largest, load3, splat3, sub};
 use super::ray::{LEAST_COMPONENT, UNDERFLOW, UNIT_ROUNDOFF, in_range, narrowed, size_of, widened};
 use super::walk::{STACK, nearest_last};
@@ -147,12 +147,9 @@ pub(super) fn occluded<S: Simd>(
             continue;
         }
         if child.is_leaf() {
-            let mut left = child.count();
-            for block in &tree.blocks[child.first()..child.first() + left.div_ceil(BLOCK)] {
-                tally.triangles(left.min(BLOCK));
-                let hit = block_of_fan(simd, fan, block, left.min(BLOCK), mask & open, &mut decide);
-                open &= !hit;
-                left = left.saturating_sub(BLOCK);
+            for (block, count) in blocks_of(child) {
+                tally.triangles(count);
+                open &= !block_of_fan(simd, fan, &tree.blocks[block], count, mask & open, &mut decide);
             }
         } else if mask.count_ones() <= ALONE {
             if few.add(child, mask) {

@@ -7,7 +7,7 @@
 //! Boulos, Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies" (2007), for packets.
 
 use super::TriangleTree;
-use super::block::{BLOCK, Block, TestRays, Verdict};
+use super::block::{Block, TestRays, Verdict, blocks_of};
 use super::lanes::{load3, splat3};
 use super::ray::{Clipped, NarrowRay, UNIT_ROUNDOFF};
 use super::single::{self, Candidate, Candidates, add_leaf};
@@ -320,12 +320,6 @@ fn beam_meets_triangles<S: Simd>(simd: S, block: &Block, beam: &Beam, count: usi
         leave = leave.min((far * least).max(far * most));
     }
     enter.simd_le(leave).to_bitmask() as u32 & ((1 << count) - 1)
-}
-
-/// The blocks of a leaf, each with the number of its triangles.
-#[inline(always)]
-fn blocks_of(leaf: Child) -> impl Iterator<Item = (usize, usize)> {
-    (0..leaf.count().div_ceil(BLOCK)).map(move |i| (leaf.first() + i, (leaf.count() - i * BLOCK).min(BLOCK)))
 }
 
 /// Which rays meet a box.

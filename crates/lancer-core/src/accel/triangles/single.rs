@@ -1,7 +1,7 @@
 //! One ray against the triangles of a mesh.
 
 use super::TriangleTree;
-use super::block::{BLOCK, TestRays};
+use super::block::{TestRays, blocks_of};
 use super::ray::NarrowRay;
 use super::walk::{LeafVisitor, walk, walk_from};
 use crate::accel::bvh::Child;
@@ -76,10 +76,8 @@ pub(super) fn add_leaf<S: Simd>(
     end: &mut f32,
     mut add: impl FnMut(Candidate, Option<f32>, &mut f32),
 ) {
-    let mut left = leaf.count();
-    let mut index = leaf.first();
-    while left > 0 {
-        let verdict = tree.blocks[index].test(simd, ray, left.min(BLOCK), *end);
+    for (index, count) in blocks_of(leaf) {
+        let verdict = tree.blocks[index].test(simd, ray, count, *end);
         let mut maybe = verdict.maybe;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() as usize;
@@ -88,8 +86,6 @@ pub(super) fn add_leaf<S: Simd>(
             let earliest = verdict.earliest(lane);
             add(Candidate { block: index as u32, triangle: lane as u32, earliest }, latest, end);
         }
-        left = left.saturating_sub(BLOCK);
-        index += 1;
     }
 }
 
@@ -187,12 +183,10 @@ struct OcclusionSearch<'a, S: Simd, T> {
 impl<S: Simd, T: Tally> LeafVisitor for OcclusionSearch<'_, S, T> {
     #[inline(always)]
     fn leaf(&mut self, leaf: Child) -> f32 {
-        let mut left = leaf.count();
-        let mut index = leaf.first();
-        while left > 0 {
+        for (index, count) in blocks_of(leaf) {
             let block = &self.tree.blocks[index];
-            self.tally.triangles(left.min(BLOCK));
-            let verdict = block.test(self.simd, &self.block_ray, left.min(BLOCK), self.narrow.end);
+            self.tally.triangles(count);
+            let verdict = block.test(self.simd, &self.block_ray, count, self.narrow.end);
             let mut unsure = verdict.maybe;
             self.found = verdict.sure != 0;
             while unsure != 0 && !self.found {
@@ -203,8 +197,6 @@ impl<S: Simd, T: Tally> LeafVisitor for OcclusionSearch<'_, S, T> {
             if self.found {
                 return -1.0;
             }
-            left = left.saturating_sub(BLOCK);
-            index += 1;
         }
         self.narrow.end
     }

@@ -6,10 +6,11 @@
 //! and worked off in batches, without such branches; what they meet goes to the ends of two lists, of nodes and leaves.
 
 use super::{ALONE, Fan};
+use crate::accel::bits;
 use crate::accel::bvh::{Bvh, Child, WIDTH, WideNode};
 use crate::accel::tally::Tally;
 use crate::accel::triangles::TriangleTree;
-use crate::accel::triangles::block::{BLOCK, Block, TestRays};
+use crate::accel::triangles::block::{Block, TestRays, blocks_of};
 use crate::accel::triangles::lanes::splat3;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, u32x4};
@@ -81,10 +82,8 @@ impl Pairs {
     /// Adds the directions set in `mask`, at most [`ALONE`], with a node. Says whether there are enough to follow.
     #[inline(always)]
     pub(super) fn add(&mut self, node: Child, mask: u64) -> bool {
-        let mut rest = mask;
-        while rest != 0 {
-            self.nodes.push(Pair { child: node, direction: rest.trailing_zeros() });
-            rest &= rest - 1;
+        for direction in bits(mask) {
+            self.nodes.push(Pair { child: node, direction: direction as u32 });
         }
         self.nodes.count >= ENOUGH
     }
@@ -178,9 +177,8 @@ fn leaf<S: Simd>(
     };
     // The reach is rounded up, by less than a part in 10^5.
     let sure_end = fan.reach * (1.0 - 1e-5);
-    let mut left = leaf.count();
-    for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
-        let count = left.min(BLOCK);
+    for (block, count) in blocks_of(leaf) {
+        let block = &tree.blocks[block];
         tally.triangles(count);
         let verdict = block.test(simd, &ray, count, fan.reach);
         let others = !places_of(simd, block, fan.own);
@@ -190,15 +188,11 @@ fn leaf<S: Simd>(
         if sure != 0 {
             return true;
         }
-        let mut unsure = verdict.maybe & others;
-        while unsure != 0 {
-            let lane = unsure.trailing_zeros() as usize;
-            unsure &= unsure - 1;
+        for lane in bits(verdict.maybe & others) {
             if decide(direction, &block.triangle(lane)) {
                 return true;
             }
         }
-        left -= count;
     }
     false
 }
