@@ -6,7 +6,7 @@ mod motion;
 
 pub use motion::CameraPath;
 
-use crate::geometry::{DVec3, Ray, portable};
+use crate::geometry::{DVec3, Ray, RayPacket, portable};
 
 /// A perspective camera as its author says it. Lengths in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,8 +105,16 @@ const ALONG_THE_VIEW: f64 = 1e-12;
 
 impl Projection {
     /// The ray through the point (`x`, `y`) of the image, in pixels from its top left corner; unit direction.
+    #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         Ray::new(self.eye, (self.top_left + self.right * x + self.down * y).normalize())
+    }
+
+    /// The rays through points (`x`, `y`) of the image, each as [`Projection::ray`] finds it.
+    pub fn rays(&self, x: &[f64; RayPacket::LANES], y: &[f64; RayPacket::LANES], rays: &mut RayPacket) {
+        for lane in 0..RayPacket::LANES {
+            rays.set(lane, &self.ray(x[lane], y[lane]));
+        }
     }
 
     /// Where a point of the world is in the image: x and y in pixels from its top left corner, and its depth along
@@ -149,6 +157,19 @@ mod tests {
         let projection = camera.project(200, 100).unwrap();
         assert_close(projection.ray(100.0, 0.0).direction, DVec3::new(0.0, 1.0, -1.0).normalize());
         assert_close(projection.ray(0.0, 50.0).direction, DVec3::new(-2.0, 0.0, -1.0).normalize());
+    }
+
+    #[test]
+    fn rays_of_a_packet_are_those_of_their_points_bit_for_bit() {
+        let camera = Camera { eye: DVec3::new(3.0, -2.0, 5.0), fov: 70.0, ..Camera::default() };
+        let projection = camera.project(640, 480).unwrap();
+        let x = std::array::from_fn(|lane| 39.7 * lane as f64 - 100.3);
+        let y = std::array::from_fn(|lane| 480.0 - 31.1 * lane as f64);
+        let mut rays = RayPacket::default();
+        projection.rays(&x, &y, &mut rays);
+        for lane in 0..RayPacket::LANES {
+            assert_eq!(rays.ray(lane), projection.ray(x[lane], y[lane]));
+        }
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub const fn gamma(n: u32) -> f64 {
 /// `point` lies within `point_error` (by axis) of the surface whose unit normal there is `geometric_normal`.
 /// Returns a point on the side of the surface that `direction` goes to, so that the ray cannot meet the
 /// surface that it left. The normal may face either side.
+#[inline(always)]
 pub fn leave_surface(point: DVec3, point_error: DVec3, geometric_normal: DVec3, direction: DVec3) -> DVec3 {
     let distance = geometric_normal.abs().dot(point_error);
     let step = geometric_normal * distance;
@@ -34,7 +35,23 @@ pub fn ray_from_surface(point: DVec3, point_error: DVec3, geometric_normal: DVec
     Ray::new(leave_surface(point, point_error, geometric_normal, direction), direction)
 }
 
+/// The segment from a surface to `target`, with t from 0 to 1; see [`leave_surface`].
+#[inline(always)]
+pub fn segment_from_surface(point: DVec3, point_error: DVec3, geometric_normal: DVec3, target: DVec3) -> Ray {
+    Ray::between(leave_surface(point, point_error, geometric_normal, target - point), target)
+}
+
+/// Whether `target` is clearly off the plane that touches a surface at a point: not so near to it that rounding could
+/// hide on which side it is.
+#[inline(always)]
+pub fn stands_off(point: DVec3, point_error: DVec3, geometric_normal: DVec3, target: DVec3) -> bool {
+    let height = geometric_normal.dot(target - point).abs();
+    let uncertainty = geometric_normal.abs().dot(point_error);
+    height > 16.0 * uncertainty
+}
+
 /// One step of `f64` further in the direction of `step`: the sum may have been rounded back.
+#[inline(always)]
 fn round_along(value: f64, step: f64) -> f64 {
     if step > 0.0 {
         value.next_up()

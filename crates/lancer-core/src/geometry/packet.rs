@@ -22,7 +22,7 @@ pub(crate) fn put(vectors: &mut Vectors, lane: usize, vector: DVec3) {
 /// Sixteen rays by coordinate, as vector instructions want them.
 ///
 /// Shape: `[axis][lane]`. Which lanes hold a ray is for whoever made the packet to know, as a mask of a bit a lane.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RayPacket {
     /// See [`Ray::origin`].
     pub origin: Vectors,

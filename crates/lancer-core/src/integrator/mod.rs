@@ -5,6 +5,7 @@
 
 mod ambient_occlusion;
 mod camera_rays;
+mod lighting;
 mod listener;
 #[cfg(test)]
 mod tests;

@@ -6,6 +6,7 @@
 //!
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
+use super::lighting::Lighting;
 use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::cancel::CancelToken;
@@ -40,19 +41,11 @@ pub struct Scratch {
 
 const LANES: usize = RayPacket::LANES;
 
-/// What the lights do at the surfaces that rays have met.
-#[derive(Clone, Debug, Default)]
-struct Lighting {
-    /// For each surface in turn, by light: its term where nothing hides it, black where it has none.
-    radiances: Vec<Rgb>,
-    /// For each light the surfaces that it reaches, a bit for each.
-    visible: Vec<u32>,
-}
-
 #[derive(Clone, Debug)]
 struct PendingRay {
     ray: Ray,
     path: Path,
+    key: Key,
 }
 
 /// What a ray brings along.
@@ -62,7 +55,6 @@ struct Path {
     throughput: Rgb,
     /// How many reflections and refractions may follow.
     depth: u32,
-    key: Key,
     media: Media,
 }
 
@@ -121,24 +113,27 @@ impl<'w> Whitted<'w> {
         listener: &mut L,
         tally: &T,
     ) -> Rgb {
-        let mut rays = CameraRays::default();
-        rays.push(&ray, key);
+        let rays = CameraRays::one(&ray, key);
         let listeners = std::slice::from_mut(listener);
-        self.trace(&rays, media, scratch, counts, listeners, tally)[0]
+        let mut sums = [Rgb::BLACK; LANES];
+        self.trace(&rays, media, scratch, counts, listeners, tally, &mut sums);
+        sums[0]
     }
 
-    /// The radiances that arrive along camera rays from one place, each as [`Whitted::radiance`] finds it: sooner
-    /// where they go much the same way, since they are traced together.
-    pub fn radiances(
+    /// Adds to `sums` the radiances that arrive along camera rays from one place, each as [`Whitted::radiance`] finds
+    /// it: sooner where they go much the same way, since they are traced together.
+    pub fn add_radiances(
         &self,
         rays: &CameraRays,
         media: &Media,
         scratch: &mut Scratch,
         counts: &mut RayCounts,
-    ) -> [Rgb; RayPacket::LANES] {
-        self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted)
+        sums: &mut [Rgb; RayPacket::LANES],
+    ) {
+        self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted, sums);
     }
 
+    #[expect(clippy::too_many_arguments, reason = "as above")]
     fn trace<L: Listener, T: Tally>(
         &self,
         rays: &CameraRays,
@@ -147,19 +142,21 @@ impl<'w> Whitted<'w> {
         counts: &mut RayCounts,
         listeners: &mut [L],
         tally: &T,
-    ) -> [Rgb; LANES] {
+        sums: &mut [Rgb; LANES],
+    ) {
         let Scratch { pending, lighting } = scratch;
         let mut walk =
             Walk { integrator: self, pending, lighting, counts, listeners, tally, next_id: [1; LANES] };
-        let mut radiances = walk.run(rays, media);
-        for radiance in &mut radiances {
+        let mut radiances = [Rgb::BLACK; LANES];
+        walk.run(rays, media, &mut radiances);
+        for (sum, radiance) in sums.iter_mut().zip(radiances) {
             // In the precision of a pixel, which holds less than this one does.
-            if !radiance.map(|channel| f64::from(channel as f32)).is_finite() {
+            if radiance.map(|channel| f64::from(channel as f32)).is_finite() {
+                *sum += radiance;
+            } else {
                 counts.replaced += 1;
-                *radiance = Rgb::BLACK;
             }
         }
-        radiances
     }
 
     /// c_a at the surfaces that camera rays meet; 1 where one meets none.
@@ -217,9 +214,6 @@ impl<'w> Whitted<'w> {
 /// So many rays are traced together; fewer go one by one.
 const WORTH_A_PACKET: u32 = 4;
 
-/// What a camera ray is, and its throughput.
-const CAMERA: (RayKind, Rgb) = (RayKind::Primary, Rgb::WHITE);
-
 /// The trees of camera rays on their way, in step: the next ray of each is traced together.
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
@@ -238,6 +232,7 @@ struct Arrival<'a> {
     lane: usize,
     id: RayId,
     path: &'a Path,
+    key: Key,
     ray: Ray,
     at: &'a Intersection,
     /// Other dielectrics whose surfaces coincide with this one.
@@ -246,27 +241,27 @@ struct Arrival<'a> {
 }
 
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
-    fn run(&mut self, first: &CameraRays, media: &Media) -> [Rgb; LANES] {
-        let mut radiances = [Rgb::BLACK; LANES];
-        let hits = self.intersect(RayId(0), first.packet(), first.lanes(), &mut radiances, |_| CAMERA);
-        if hits.iter().all(Option::is_none) {
-            return radiances;
-        }
-        let (kind, throughput) = CAMERA;
-        let depth = self.integrator.depth;
-        let path = |&key: &Key| Path { kind, throughput, depth, key, media: media.clone() };
-        let mut paths: ArrayVec<Path, LANES> = first.keys().iter().map(path).collect();
-        self.shade(RayId(0), first.packet(), &hits, &paths, &mut radiances);
+    fn run(&mut self, first: &CameraRays, media: &Media, radiances: &mut [Rgb; LANES]) {
+        let camera = &Path {
+            kind: RayKind::Primary,
+            throughput: Rgb::WHITE,
+            depth: self.integrator.depth,
+            media: media.clone(),
+        };
+        self.step(RayId(0), first.packet(), first.lanes(), &[camera; LANES], first.keys(), radiances);
         if self.pending.iter().all(VecDeque::is_empty) {
-            return radiances;
+            return;
         }
         let mut rays = first.packet().clone();
+        let mut keys = *first.keys();
+        let mut paths = [const { None }; LANES];
         for id in 1.. {
             let mut wanted = 0;
             for (lane, pending) in self.pending.iter_mut().enumerate() {
-                if let Some(PendingRay { ray, path }) = pending.pop_front() {
+                if let Some(PendingRay { ray, path, key }) = pending.pop_front() {
                     rays.set(lane, &ray);
-                    paths[lane] = path;
+                    keys[lane] = key;
+                    paths[lane] = Some(path);
                     wanted |= 1 << lane;
                 }
             }
@@ -277,11 +272,38 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
                 self.pending.iter_mut().for_each(VecDeque::clear);
                 break;
             }
-            let brings = |lane: usize| (paths[lane].kind, paths[lane].throughput);
-            let hits = self.intersect(RayId(id), &rays, wanted, &mut radiances, brings);
-            self.shade(RayId(id), &rays, &hits, &paths, &mut radiances);
+            let paths = paths.each_ref().map(|path| path.as_ref().unwrap_or(camera));
+            self.step(RayId(id), &rays, wanted, &paths, &keys, radiances);
         }
-        radiances
+    }
+
+    /// Traces one ray of each tree, and adds what is seen there.
+    fn step(
+        &mut self,
+        id: RayId,
+        rays: &RayPacket,
+        wanted: u32,
+        paths: &[&Path; LANES],
+        keys: &[Key; LANES],
+        radiances: &mut [Rgb; LANES],
+    ) {
+        let hits = self.integrator.intersect(rays, wanted, self.tally);
+        let background = self.integrator.world.background();
+        let mut met = 0;
+        for lane in bits(wanted) {
+            let &Path { kind, throughput, .. } = paths[lane];
+            self.count(kind);
+            if hits[lane].is_some() {
+                met |= 1 << lane;
+            } else {
+                self.listeners[lane].begin_ray(id, kind, throughput, &rays.ray(lane));
+                self.listeners[lane].background(background);
+                radiances[lane] += background * throughput;
+            }
+        }
+        if met != 0 {
+            self.shade(id, rays, &hits, paths, keys, radiances);
+        }
     }
 
     fn count(&mut self, kind: RayKind) {
@@ -292,37 +314,14 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
     }
 
-    /// What one ray of each tree hits. Those that hit nothing are done with; `brings` tells of a ray what it is, and its
-    /// throughput.
-    fn intersect(
-        &mut self,
-        id: RayId,
-        rays: &RayPacket,
-        wanted: u32,
-        radiances: &mut [Rgb; LANES],
-        brings: impl Fn(usize) -> (RayKind, Rgb),
-    ) -> [Option<Hit>; LANES] {
-        let hits = self.integrator.intersect(rays, wanted, self.tally);
-        let background = self.integrator.world.background();
-        for lane in bits(wanted) {
-            let (kind, throughput) = brings(lane);
-            self.count(kind);
-            if hits[lane].is_none() {
-                self.listeners[lane].begin_ray(id, kind, throughput, &rays.ray(lane));
-                self.listeners[lane].background(background);
-                radiances[lane] += background * throughput;
-            }
-        }
-        hits
-    }
-
     /// The local terms where rays have hit; what they reflect and refract is queued.
     fn shade(
         &mut self,
         id: RayId,
         rays: &RayPacket,
         hits: &[Option<Hit>; LANES],
-        paths: &[Path],
+        paths: &[&Path; LANES],
+        keys: &[Key; LANES],
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;
@@ -331,7 +330,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         let mut arrivals = ArrayVec::<Arrival, LANES>::new();
         for (lane, at) in met.iter_mut().enumerate() {
             let Some(at) = at else { continue };
-            let (path, ray) = (&paths[lane], rays.ray(lane));
+            let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
             let touching = world.see(&ray, at, self.tally);
             let material = world.material(at.material);
             let point = ShadingPoint {
@@ -341,7 +340,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
                 color: material.color.color_at(at.uv) * at.vertex_color,
                 material,
             };
-            arrivals.push(Arrival { lane, id, path, ray, at, touching, point });
+            arrivals.push(Arrival { lane, id, path, key, ray, at, touching, point });
         }
         self.find_lighting(&arrivals);
         for (index, arrival) in arrivals.iter().enumerate() {
@@ -368,59 +367,38 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         if term.radiance().is_black() {
             return Rgb::BLACK;
         }
-        let (world, key) = (self.integrator.world, arrival.path.key);
+        let world = self.integrator.world;
         let sampler = &self.integrator.occlusion;
-        term.occlusion = sampler.factor_tallied(world, arrival.at, key, self.counts, self.tally);
+        term.occlusion = sampler.factor_tallied(world, arrival.at, arrival.key, self.counts, self.tally);
         self.listeners[arrival.lane].ambient(&term);
         term.radiance()
     }
 
-    /// Finds what each light does at each surface, and whether it reaches it.
+    /// Finds what each light adds to each surface.
     fn find_lighting(&mut self, arrivals: &[Arrival]) {
-        let integrator = self.integrator;
-        let lights = integrator.world.lights();
-        self.lighting.radiances.clear();
-        for arrival in arrivals {
-            let radiances = lights.iter().map(|light| LightTerm::radiance_at(&arrival.point, light));
-            self.lighting.radiances.extend(radiances);
-        }
-        self.lighting.visible.clear();
-        self.lighting.visible.resize(lights.len(), u32::MAX);
-        if !integrator.shadows || arrivals.is_empty() {
-            return;
-        }
-        let mut segments = RayPacket::splat(&arrivals[0].ray);
-        for (place, light) in lights.iter().enumerate() {
-            let mut wanted = 0;
-            let mut left = [None; LANES];
-            for (index, arrival) in arrivals.iter().enumerate() {
-                if !self.lighting.radiances[index * lights.len() + place].is_black() {
-                    segments.set(index, &arrival.at.segment_to(light.position));
-                    left[index] = arrival.at.face_left_for(light.position);
-                    wanted |= 1 << index;
-                }
+        let Self { integrator, lighting, counts, tally, .. } = self;
+        let surfaces: ArrayVec<_, LANES> = arrivals.iter().map(|at| (at.at, &at.point)).collect();
+        lighting.find(integrator.world, &surfaces, |segments, wanted, left| {
+            if !integrator.shadows {
+                return 0;
             }
-            self.counts.shadow += u64::from(u32::count_ones(wanted));
-            self.lighting.visible[place] = !integrator.occluded(&segments, wanted, &left, self.tally);
-        }
+            counts.shadow += u64::from(wanted.count_ones());
+            integrator.occluded(segments, wanted, left, *tally)
+        });
     }
 
     /// The sum over the lights, in their order.
     fn lights(&mut self, index: usize, arrival: &Arrival) -> Rgb {
         let lights = self.integrator.world.lights();
-        let radiances = &self.lighting.radiances[index * lights.len()..];
         let mut sum = Rgb::BLACK;
-        for (place, ((light, radiance), visible)) in
-            lights.iter().zip(radiances).zip(&self.lighting.visible).enumerate()
-        {
-            let visible = visible >> index & 1 == 1;
+        for (place, (light, (radiance, visible))) in lights.iter().zip(self.lighting.at(index)).enumerate() {
             if L::HEARS_LIGHTS
                 && let Some(term) = LightTerm::new(&arrival.point, light)
             {
                 self.listeners[arrival.lane].light(place, light, &term, visible);
             }
             if visible {
-                sum += *radiance;
+                sum += radiance;
             }
         }
         sum
@@ -484,14 +462,8 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             ray: &ray,
         });
         *next_id += 1;
-        let path = Path {
-            kind,
-            throughput,
-            depth: arrival.path.depth - 1,
-            key: arrival.path.key.child(branch),
-            media,
-        };
-        self.pending[lane].push_back(PendingRay { ray, path });
+        let path = Path { kind, throughput, depth: arrival.path.depth - 1, media };
+        self.pending[lane].push_back(PendingRay { ray, path, key: arrival.key.child(branch) });
     }
 }
 

@@ -6,10 +6,9 @@ use crate::color::Rgb;
 use crate::film::Image;
 use crate::geometry::RayPacket;
 use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
-use crate::sampling::{Key, subpixel_centers};
+use crate::sampling::subpixel_centers;
 use crate::scene::{Settings, SettingsError};
 use crate::world::{Media, World};
-use arrayvec::ArrayVec;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -107,8 +106,11 @@ pub fn render(
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
     let media = Media::around(world, camera.eye);
-    frame.render(control, &|rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts| {
-        integrator.radiances(rays, &media, scratch, counts)
+    frame.render(control, &|rays: &CameraRays,
+                            scratch: &mut Scratch,
+                            counts: &mut RayCounts,
+                            sums: &mut Sums| {
+        integrator.add_radiances(rays, &media, scratch, counts, sums);
     })
 }
 
@@ -126,8 +128,10 @@ pub fn render_occlusion(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts| {
-        integrator.occlusions(rays, counts).map(Rgb::grey)
+    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts, sums: &mut Sums| {
+        for (sum, occlusion) in sums.iter_mut().zip(integrator.occlusions(rays, counts)) {
+            *sum += Rgb::grey(occlusion);
+        }
     })
 }
 
@@ -189,13 +193,8 @@ pub(super) trait Painter: Sync {
     /// reading order.
     const SIDE: u32;
 
-    /// What camera rays yield, one of each pixel of a square; something unfinished once the render is cancelled.
-    fn trace(
-        &self,
-        rays: &CameraRays,
-        tile: &mut Self::Tile,
-        counts: &mut RayCounts,
-    ) -> [Rgb; RayPacket::LANES];
+    /// Adds what camera rays yield, one of each pixel of a square; something unfinished once the render is cancelled.
+    fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts, sums: &mut Sums);
 
     /// All rays of the pixel at a column and a row of the image were traced.
     fn end_pixel(&self, _x: u32, _y: u32, _mean: [f32; 3], _tile: &mut Self::Tile) {}
@@ -207,7 +206,10 @@ pub(super) trait Painter: Sync {
 /// The side of the square of pixels whose rays fill a packet.
 pub(super) const BLOCK: u32 = 4;
 
-impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts) -> [Rgb; RayPacket::LANES] + Sync> Painter for F {
+/// The sum of what the camera rays of each pixel of a square yield.
+pub(super) type Sums = [Rgb; RayPacket::LANES];
+
+impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Sums) + Sync> Painter for F {
     type Tile = Scratch;
 
     fn begin_tile(&self) -> Scratch {
@@ -216,13 +218,8 @@ impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts) -> [Rgb; RayPacket::LANES]
 
     const SIDE: u32 = BLOCK;
 
-    fn trace(
-        &self,
-        rays: &CameraRays,
-        scratch: &mut Scratch,
-        counts: &mut RayCounts,
-    ) -> [Rgb; RayPacket::LANES] {
-        self(rays, scratch, counts)
+    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, sums: &mut Sums) {
+        self(rays, scratch, counts, sums);
     }
 }
 
@@ -252,15 +249,16 @@ impl<P: Painter> Job<'_, P> {
         let mut counts = RayCounts::default();
         let mut kept = self.painter.begin_tile();
         let mut pixels = vec![[0.0; 3]; area.width as usize * area.height as usize];
+        let mut rays = CameraRays::default();
         for block in tiles_of(&area, P::SIDE) {
             let place = Region { x: area.x + block.x, y: area.y + block.y, ..block };
             // After a panic what is kept and the counts are dropped with the tile.
-            let means = catch_unwind(AssertUnwindSafe(|| self.block(&place, &mut kept, &mut counts)));
-            match means {
+            let trace = AssertUnwindSafe(|| self.block(&place, &mut rays, &mut kept, &mut counts));
+            match catch_unwind(trace) {
                 Ok(means) => {
-                    let means = means?;
-                    for (row, means) in means.chunks(block.width as usize).enumerate() {
-                        let start = (block.y as usize + row) * area.width as usize + block.x as usize;
+                    let rows = (block.y..block.y + block.height).map(|y| y as usize);
+                    for (y, means) in rows.zip(means?.chunks(block.width as usize)) {
+                        let start = y * area.width as usize + block.x as usize;
                         pixels[start..start + means.len()].copy_from_slice(means);
                     }
                 }
@@ -291,36 +289,28 @@ impl<P: Painter> Job<'_, P> {
     fn block(
         &self,
         place: &Region,
+        rays: &mut CameraRays,
         kept: &mut P::Tile,
         counts: &mut RayCounts,
-    ) -> Option<ArrayVec<[f32; 3], { RayPacket::LANES }>> {
+    ) -> Option<[[f32; 3]; RayPacket::LANES]> {
         let Frame { projection, samples, .. } = &self.frame;
         let Region { x, y, width, height } = self.in_image(place);
-        let pixels = || (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
         let mut sums = [Rgb::BLACK; RayPacket::LANES];
-        let mut rays = CameraRays::default();
-        for (subpixel, (dx, dy)) in subpixel_centers(*samples).enumerate() {
-            rays.clear();
-            for (x, y) in pixels() {
-                let ray = projection.ray(f64::from(x) + dx, f64::from(y) + dy);
-                rays.push(&ray, Key::camera(x, y, subpixel as u32));
-            }
-            let radiances = self.painter.trace(&rays, kept, counts);
-            for (sum, radiance) in sums.iter_mut().zip(radiances) {
-                *sum += radiance;
-            }
+        for (subpixel, center) in subpixel_centers(*samples).enumerate() {
+            rays.aim(projection, x..x + width, y..y + height, subpixel as u32, center);
+            self.painter.trace(rays, kept, counts, &mut sums);
             // Afterwards: what was cancelled on its way is unfinished.
             if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
                 return None;
             }
         }
-        let means = pixels().zip(sums).map(|((x, y), sum)| {
-            let mean = sum * (1.0 / f64::from(samples * samples));
-            let mean = mean.to_array().map(|channel| channel as f32);
+        let scale = 1.0 / f64::from(samples * samples);
+        let means = sums.map(|sum| (sum * scale).to_array().map(|channel| channel as f32));
+        let pixels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
+        for ((x, y), mean) in pixels.zip(means) {
             self.painter.end_pixel(x, y, mean, kept);
-            mean
-        });
-        Some(means.collect())
+        }
+        Some(means)
     }
 }
 

@@ -68,4 +68,9 @@ impl Material {
     pub fn named(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
+
+    /// Whether lights add anything to its surfaces.
+    pub fn is_lit(&self) -> bool {
+        !self.diffuse.is_black() || !self.specular.is_black()
+    }
 }

@@ -20,6 +20,7 @@ mod tests;
 
 pub use dielectric::{fresnel_reflectance, reflect, refract};
 pub use terms::{AmbientTerm, LightTerm, specular_normalization};
+pub(crate) use terms::{Incidence, diffuse, specular};
 
 use crate::color::Rgb;
 use crate::geometry::DVec3;

@@ -3,7 +3,7 @@
 use super::ShadingPoint;
 use crate::color::Rgb;
 use crate::geometry::{DVec3, portable};
-use crate::scene::Light;
+use crate::scene::{Light, Material};
 use std::f64::consts::PI;
 
 /// c_a L_a k_a S, and its factors.
@@ -51,47 +51,21 @@ impl LightTerm {
     /// The term of a light that nothing hides; none where the surface faces away from it, or where it adds
     /// nothing.
     pub fn new(point: &ShadingPoint, light: &Light) -> Option<Self> {
-        Self::find::<true>(point, light)
-    }
-
-    /// The value of that term; black where there is none.
-    pub fn radiance_at(point: &ShadingPoint, light: &Light) -> Rgb {
-        Self::find::<false>(point, light).map_or(Rgb::BLACK, |term| term.radiance())
-    }
-
-    /// With `EXPLAIN` all factors are found, else those that the value depends on.
-    #[inline(always)]
-    fn find<const EXPLAIN: bool>(point: &ShadingPoint, light: &Light) -> Option<Self> {
-        let material = point.material;
-        let shines = !material.specular.is_black();
-        if !shines && material.diffuse.is_black() {
+        let &ShadingPoint { position, normal, to_eye, color, material } = point;
+        if !material.is_lit() || light.intensity.is_black() {
             return None;
         }
-        let to_light = light.position - point.position;
-        let distance = to_light.length();
-        let direction = to_light / distance;
-        let cosine = point.normal.dot(direction);
+        let Incidence { distance, direction, falloff, cosine, half_cosine } =
+            Incidence::new(position, normal, to_eye, light.position);
         // Also false for a light in the point itself, whose direction is NaN.
         let faces_the_light = cosine > 0.0;
-        if !faces_the_light || light.intensity.is_black() {
+        if !faces_the_light {
             return None;
         }
-        let irradiance = light.intensity * (1.0 / (PI * distance * distance));
-        let half_cosine = if shines || EXPLAIN {
-            let half = (direction + point.to_eye).normalize_or_zero();
-            point.normal.dot(half).max(0.0)
-        } else {
-            0.0
-        };
+        let irradiance = light.intensity * falloff;
         let normalization = specular_normalization(material.shininess);
-        let diffuse = irradiance * material.diffuse * point.color * cosine;
-        let specular = if shines {
-            let tint = material.metallic * point.color + material.metallic.map(|m| 1.0 - m);
-            let lobe = normalization * portable::pow(half_cosine, material.shininess);
-            irradiance * material.specular * tint * lobe
-        } else {
-            Rgb::BLACK
-        };
+        let diffuse = diffuse(irradiance, material.diffuse, color, cosine);
+        let specular = specular(irradiance, material, color, half_cosine);
         let term =
             Self { distance, direction, irradiance, cosine, half_cosine, normalization, diffuse, specular };
         (!term.radiance().is_black()).then_some(term)
@@ -101,6 +75,55 @@ impl LightTerm {
     pub fn radiance(&self) -> Rgb {
         self.diffuse + self.specular
     }
+}
+
+/// How a light stands to a point, whatever the material there is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Incidence {
+    /// r: the distance to the light.
+    pub(crate) distance: f64,
+    /// L: the unit direction to the light.
+    pub(crate) direction: DVec3,
+    /// 1 / (pi r^2).
+    pub(crate) falloff: f64,
+    /// N.L.
+    pub(crate) cosine: f64,
+    /// (N.H)+.
+    pub(crate) half_cosine: f64,
+}
+
+impl Incidence {
+    /// For N and V of a point. Without branches, so that vector code can be made of it.
+    #[inline(always)]
+    pub(crate) fn new(position: DVec3, normal: DVec3, to_eye: DVec3, light_position: DVec3) -> Self {
+        let to_light = light_position - position;
+        let distance = to_light.length();
+        let direction = to_light / distance;
+        let half = (direction + to_eye).normalize_or_zero();
+        Self {
+            distance,
+            direction,
+            falloff: 1.0 / (PI * distance * distance),
+            cosine: normal.dot(direction),
+            half_cosine: normal.dot(half).max(0.0),
+        }
+    }
+}
+
+/// L_i / (pi r^2) k_d S (N.L).
+#[inline(always)]
+pub(crate) fn diffuse(irradiance: Rgb, coefficient: Rgb, color: Rgb, cosine: f64) -> Rgb {
+    irradiance * coefficient * color * cosine
+}
+
+/// L_i / (pi r^2) c_s k_s (m S + (1 - m)) ((N.H)+)^n.
+pub(crate) fn specular(irradiance: Rgb, material: &Material, color: Rgb, half_cosine: f64) -> Rgb {
+    if material.specular.is_black() {
+        return Rgb::BLACK;
+    }
+    let tint = material.metallic * color + material.metallic.map(|m| 1.0 - m);
+    let lobe = specular_normalization(material.shininess) * portable::pow(half_cosine, material.shininess);
+    irradiance * material.specular * tint * lobe
 }
 
 /// c_s = (n + 2) / 2, by which a highlight reflects the same light in all whatever the shininess n is.

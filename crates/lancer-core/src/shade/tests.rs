@@ -41,22 +41,6 @@ fn diffuse_term_is_the_light_over_pi_r_squared_times_the_cosine() {
 }
 
 #[test]
-fn radiance_at_a_point_is_that_of_the_term_bit_for_bit() {
-    let specular = [Rgb::BLACK, Rgb::new(0.3, 0.2, 0.1)];
-    let diffuse = [Rgb::BLACK, Rgb::new(0.2, 0.4, 0.6)];
-    for (specular, diffuse) in specular.into_iter().flat_map(|s| diffuse.map(|d| (s, d))) {
-        let material = Material { diffuse, specular, shininess: 17.0, ..Material::default() };
-        for step in 0..=100 {
-            let (sin, cos) = sin_cos(PI * f64::from(step) / 100.0);
-            let light = light(DVec3::new(cos, sin - 0.3, 0.2));
-            let point = point(&material, DVec3::new(0.6, 0.8, 0.0));
-            let term = LightTerm::new(&point, &light).map_or(Rgb::BLACK, |term| term.radiance());
-            assert_eq!(LightTerm::radiance_at(&point, &light), term);
-        }
-    }
-}
-
-#[test]
 fn specular_term_is_normalised_and_takes_the_surface_color_as_far_as_it_is_metallic() {
     let (sin, cos) = sin_cos(0.3);
     let to_eye = DVec3::new(-sin, cos, 0.0);

@@ -29,7 +29,7 @@ impl World {
     pub fn objects_tree_boxes(&self, level: u32, most: usize) -> Vec<[DVec3; 8]> {
         let boxes = match &self.index {
             _ if self.bounded.is_empty() => Vec::new(),
-            ObjectIndex::Bvh { tree, .. } => boxes_at(tree.nodes(), tree.bounds(), level, most),
+            ObjectIndex::Bvh(tree) => boxes_at(tree.nodes(), tree.bounds(), level, most),
             ObjectIndex::Kd(tree) => tree.cells_at(level, most),
             ObjectIndex::None => Vec::new(),
         };

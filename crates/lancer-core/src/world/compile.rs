@@ -130,6 +130,7 @@ impl World {
             index: ObjectIndex::None,
             bounds: Bounds::EMPTY,
             options: *options,
+            level: options.level(),
         };
         world.index_objects(cancel)?;
         Ok(world)
@@ -162,10 +163,7 @@ impl World {
             }
         }
         self.index = match options.accelerator {
-            Accelerator::Bvh => {
-                let tree = Bvh::build_with(&boxes, options.quality, cancel)?;
-                ObjectIndex::Bvh { tree, level: options.level() }
-            }
+            Accelerator::Bvh => ObjectIndex::Bvh(Bvh::build_with(&boxes, options.quality, cancel)?),
             Accelerator::KdTree => {
                 ObjectIndex::Kd(KdTree::build_with(&ObjectBoxes(boxes), options.kd, cancel)?)
             }

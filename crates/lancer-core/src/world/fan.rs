@@ -45,7 +45,7 @@ impl World {
             }
         }
         let by_objects = match &self.index {
-            ObjectIndex::Bvh { .. } => true,
+            ObjectIndex::Bvh(_) => true,
             ObjectIndex::Kd(_) | ObjectIndex::None => false,
         };
         if !by_objects {
@@ -96,7 +96,7 @@ impl World {
     fn occluded_by_bounded(&self, rays: &FanRays, wanted: u64, tally: &impl Tally) -> u64 {
         let mut open = wanted;
         let mut found = false;
-        if let ObjectIndex::Bvh { tree, level } = &self.index
+        if let ObjectIndex::Bvh(tree) = &self.index
             && self.bounded.len() > Self::FEW
         {
             let visit = |leaf: Child, mask: u64| {
@@ -108,7 +108,8 @@ impl World {
                 hit
             };
             let receiver = rays.in_world();
-            found = visit_fan(*level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, tally, visit);
+            found =
+                visit_fan(self.level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, tally, visit);
         }
         if !found {
             for &id in &self.bounded {

@@ -1,11 +1,12 @@
 //! A hit with everything that shading wants to know of it.
 
-use super::{Hit, Object, ObjectId, ObjectIndex, World};
+use super::{Hit, Object, ObjectId, World};
 use crate::color::Rgb;
+use crate::geometry::error::{ray_from_surface, segment_from_surface, stands_off};
 use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket};
 use crate::scene::MaterialId;
 use crate::shape::{self, SurfacePoint, SurfacePoints};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::dispatch;
 
 const LANES: usize = RayPacket::LANES;
 
@@ -86,27 +87,24 @@ impl Intersection {
 
     /// The ray that leaves this surface in `direction`, to whichever side that is.
     pub fn spawn(&self, direction: DVec3) -> Ray {
-        crate::geometry::error::ray_from_surface(
-            self.point,
-            self.point_error,
-            self.geometric_normal,
-            direction,
-        )
+        ray_from_surface(self.point, self.point_error, self.geometric_normal, direction)
     }
 
     /// The segment that leaves this surface and ends at `target`; t runs from 0 to 1.
     pub fn segment_to(&self, target: DVec3) -> Ray {
-        let start = self.spawn(target - self.point).origin;
-        Ray::between(start, target)
+        segment_from_surface(self.point, self.point_error, self.geometric_normal, target)
     }
 
     /// The face that the point lies on, if the target stands clearly off the plane that touches it there: a flat face, as
     /// a triangle is, cannot then be met by [`Intersection::segment_to`] that target, which starts off the face and rises.
     /// None where rounding could hide on which side of the plane the target is.
     pub fn face_left_for(&self, target: DVec3) -> Option<Face> {
-        let height = self.geometric_normal.dot(target - self.point).abs();
-        let uncertainty = self.geometric_normal.abs().dot(self.point_error);
-        (height > 16.0 * uncertainty).then_some(Face { object: self.object, primitive: self.primitive })
+        stands_off(self.point, self.point_error, self.geometric_normal, target).then_some(self.face())
+    }
+
+    /// The face that the point lies on.
+    pub fn face(&self) -> Face {
+        Face { object: self.object, primitive: self.primitive }
     }
 }
 
@@ -122,11 +120,10 @@ impl World {
             let Some(hit) = hits[lane].filter(|_| found[lane].is_none()) else { continue };
             let alike = |other: &Option<Hit>| other.filter(|other| other.object == hit.object);
             let hits = hits.each_ref().map(alike);
-            match self.index {
-                ObjectIndex::Bvh { level, .. } if hits.iter().flatten().count() >= TOGETHER => {
-                    self.intersections_with(level, self.object(hit.object), rays, &hits, found);
-                }
-                _ => found[lane] = Some(self.intersection(&rays.ray(lane), &hit)),
+            if hits.iter().flatten().count() >= TOGETHER {
+                self.intersections_with(self.object(hit.object), rays, &hits, found);
+            } else {
+                found[lane] = Some(self.intersection(&rays.ray(lane), &hit));
             }
         }
     }
@@ -134,7 +131,6 @@ impl World {
     /// Adds the surfaces at hits with one object.
     fn intersections_with(
         &self,
-        level: Level,
         object: &Object,
         rays: &RayPacket,
         hits: &[Option<Hit>; LANES],
@@ -142,7 +138,7 @@ impl World {
     ) {
         let mut from_inside = [false; LANES];
         let mut surfaces = SurfacePoints::default();
-        dispatch!(level, _simd => {
+        dispatch!(self.level, _simd => {
             let rays = object.placement.rays_to_object(rays);
             object.geometry.surfaces(&rays, hits, &self.meshes, &mut surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {

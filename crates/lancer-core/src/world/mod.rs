@@ -107,12 +107,14 @@ pub struct World {
     bounds: Bounds,
     /// How it was compiled.
     options: CompileOptions,
+    /// The vector instructions that its kernels use.
+    level: Level,
 }
 
 /// What finds the bounded objects, as numbers of their places in `bounded`.
 #[derive(Clone, Debug)]
 enum ObjectIndex {
-    Bvh { tree: Bvh, level: Level },
+    Bvh(Bvh),
     Kd(KdTree),
     None,
 }
@@ -121,7 +123,7 @@ impl ObjectIndex {
     /// Its nodes, its bytes, and the depth of the deepest node.
     fn size(&self) -> (u64, u64, u32) {
         match self {
-            Self::Bvh { tree, .. } => (tree.nodes().len() as u64, tree.bytes() as u64, tree.depth()),
+            Self::Bvh(tree) => (tree.nodes().len() as u64, tree.bytes() as u64, tree.depth()),
             Self::Kd(tree) => (tree.node_count() as u64, tree.bytes() as u64, tree.depth()),
             Self::None => (0, 0, 0),
         }
@@ -174,6 +176,11 @@ impl World {
     /// Where `id` is of another world and out of range here.
     pub fn material(&self, id: MaterialId) -> &Material {
         &self.materials[id.index()]
+    }
+
+    /// The vector instructions that kernels are to use.
+    pub(crate) fn level(&self) -> Level {
+        self.level
     }
 
     /// The lights, in the order in which they are summed.
@@ -279,7 +286,7 @@ impl World {
         match &self.index {
             // A few objects are looked at one by one: each looks at its own bounds first.
             _ if self.bounded.len() <= Self::FEW => self.visit_all_bounded(visit),
-            ObjectIndex::Bvh { tree, level } => match NarrowRay::prepare(&ray, &self.bounds) {
+            ObjectIndex::Bvh(tree) => match NarrowRay::prepare(&ray, &self.bounds) {
                 Narrowed::Misses => {}
                 Narrowed::Ready(narrow) => {
                     let mut visit_leaf = |leaf: Child| {
@@ -292,7 +299,7 @@ impl World {
                         }
                         narrow.up_to(t_max)
                     };
-                    dispatch!(*level, simd => {
+                    dispatch!(self.level, simd => {
                         walk(simd, tree.nodes(), &narrow, tally, &mut visit_leaf);
                     });
                 }

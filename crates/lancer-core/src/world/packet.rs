@@ -18,8 +18,8 @@ impl World {
         let mut best: [Option<Hit>; LANES] = [None; LANES];
         // A hit at the same t is looked at too: the lower object is to win.
         let mut up_to = rays.t_max;
-        let visited = self.visit_objects_of_packet(rays, wanted, |level, id, object, lanes, t_max| {
-            let hits = object.intersect_packet(level, rays, &up_to, lanes, self);
+        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, t_max| {
+            let hits = object.intersect_packet(rays, &up_to, lanes, self);
             for lane in bits(lanes) {
                 let Some(shape::Hit { t, primitive }) = hits[lane] else { continue };
                 if best[lane].is_none_or(|best| (t, id) < (best.t, best.object)) {
@@ -41,9 +41,9 @@ impl World {
     /// among them need no test, which would be too close to tell.
     pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
         let mut occluded = 0;
-        let visited = self.visit_objects_of_packet(rays, wanted, |level, id, object, lanes, _| {
+        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
             let own = left.map(|face| face.filter(|face| face.object == id).map(|face| face.primitive));
-            let hit = object.occluded_packet(level, rays, lanes, &own, self);
+            let hit = object.occluded_packet(rays, lanes, &own, self);
             occluded |= hit;
             hit
         });
@@ -60,13 +60,13 @@ impl World {
         &self,
         rays: &RayPacket,
         wanted: u32,
-        mut visit: impl FnMut(Level, ObjectId, &Object, u32, &mut [f64; LANES]) -> u32,
+        mut visit: impl FnMut(ObjectId, &Object, u32, &mut [f64; LANES]) -> u32,
     ) -> u32 {
-        let ObjectIndex::Bvh { tree, level } = &self.index else { return 0 };
+        let ObjectIndex::Bvh(tree) = &self.index else { return 0 };
         let mut t_max = rays.t_max;
         let mut open = wanted;
         let mut visit = |id: ObjectId, lanes: u32, t_max: &mut [f64; LANES]| {
-            open &= !visit(*level, id, self.object(id), lanes, t_max);
+            open &= !visit(id, self.object(id), lanes, t_max);
             open
         };
         let mut left = wanted;
@@ -81,8 +81,9 @@ impl World {
         }
         let rays = RayPacket { t_max, ..rays.clone() };
         let mut out_of_range = 0;
-        dispatch!(*level, simd => {
-            let packet = NarrowPacket::new(&rays, left, &self.bounds);
+        dispatch!(self.level, simd => {
+            let mut packet = NarrowPacket::default();
+            packet.prepare(&rays, left, &self.bounds);
             out_of_range = packet.out_of_range;
             let mut open = packet.ready;
             let objects = &self.bounded;
@@ -126,20 +127,19 @@ impl Object {
     /// The nearest hits of the rays `wanted`, each with t in (0, `up_to`).
     fn intersect_packet(
         &self,
-        level: Level,
         rays: &RayPacket,
         up_to: &[f64; LANES],
         wanted: u32,
         world: &World,
     ) -> [Option<shape::Hit>; LANES] {
         let mut hits = [None; LANES];
-        if let Some(nearest) = self.nearest_on_one_face(level, rays, up_to) {
+        if let Some(nearest) = self.nearest_on_one_face(world.level, rays, up_to) {
             for lane in bits(wanted) {
                 hits[lane] = shape::hit_at(nearest[lane]);
             }
             return hits;
         }
-        let mut local = self.rays_to_object(level, rays);
+        let mut local = self.rays_to_object(world.level, rays);
         local.t_max = *up_to;
         if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             return tree.intersect_packet(&local, wanted);
@@ -153,17 +153,16 @@ impl Object {
     /// Which of the rays `wanted` it stops; none of a mesh's by the ray's own triangle.
     fn occluded_packet(
         &self,
-        level: Level,
         rays: &RayPacket,
         wanted: u32,
         own: &[Option<u32>; LANES],
         world: &World,
     ) -> u32 {
-        if let Some(nearest) = self.nearest_on_one_face(level, rays, &rays.t_max) {
+        if let Some(nearest) = self.nearest_on_one_face(world.level, rays, &rays.t_max) {
             return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest[lane] < f64::INFINITY) << lane)
                 & wanted;
         }
-        let local = self.rays_to_object(level, rays);
+        let local = self.rays_to_object(world.level, rays);
         if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             return tree.occluded_packet(&local, wanted, own);
         }

@@ -58,24 +58,24 @@ pub(crate) struct NarrowPacket {
 }
 
 impl NarrowPacket {
-    /// Prepares the rays `wanted` for what lies within `bounds`.
+    /// Prepares the rays `wanted` for what lies within `bounds`, in place of what the packet held: it is too large to be
+    /// handed on.
     #[inline(always)]
-    pub(crate) fn new(rays: &RayPacket, wanted: u32, bounds: &Bounds) -> Self {
-        let mut packet = Self::default();
+    pub(crate) fn prepare(&mut self, rays: &RayPacket, wanted: u32, bounds: &Bounds) {
         let (mut meets, mut fits) = ([false; LANES], [false; LANES]);
         for lane in 0..LANES {
             let clipped = Clipped::new(&rays.ray(lane), bounds);
             let ray = clipped.narrow();
             (meets[lane], fits[lane]) = (clipped.meets, clipped.fits);
-            packet.put(lane, &ray);
+            self.put(lane, &ray);
         }
+        (self.ready, self.out_of_range) = (0, 0);
         for lane in 0..LANES {
-            packet.ready |= u32::from(meets[lane] & fits[lane]) << lane;
-            packet.out_of_range |= u32::from(!fits[lane]) << lane;
+            self.ready |= u32::from(meets[lane] & fits[lane]) << lane;
+            self.out_of_range |= u32::from(!fits[lane]) << lane;
         }
-        packet.ready &= wanted;
-        packet.out_of_range &= wanted;
-        packet
+        self.ready &= wanted;
+        self.out_of_range &= wanted;
     }
 
     #[inline(always)]
@@ -390,7 +390,9 @@ pub(super) fn intersect<S: Simd>(
     rays: &RayPacket,
     wanted: u32,
 ) -> ([Option<Hit>; LANES], u32) {
-    let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
+    let mut packet = NarrowPacket::default();
+    packet.prepare(rays, wanted, &tree.bounds);
+    let packet = &packet;
     let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
     let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
     let mut ends = packet.end;
@@ -543,7 +545,9 @@ pub(super) fn occluded<S: Simd>(
     wanted: u32,
     own: &[Option<u32>; LANES],
 ) -> (u32, u32) {
-    let packet = &NarrowPacket::new(rays, wanted, &tree.bounds);
+    let mut packet = NarrowPacket::default();
+    packet.prepare(rays, wanted, &tree.bounds);
+    let packet = &packet;
     let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
     let mut search = OcclusionSearch { simd, tree, packet, rays, own, occluded: 0 };
     while let Some((group, backward)) = packet.octant(&mut open) {

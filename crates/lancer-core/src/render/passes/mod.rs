@@ -18,13 +18,13 @@ mod names;
 
 pub use names::{UnknownPass, light_names, select};
 
-use super::driver::{Frame, Painter};
+use super::driver::{Frame, Painter, Sums};
 use super::features::seen;
 use super::{Control, Region, Render, RenderError};
 use crate::accel::Visits;
 use crate::camera::Camera;
 use crate::color::Rgb;
-use crate::geometry::{DVec3, Ray, RayPacket};
+use crate::geometry::{DVec3, Ray};
 use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
 use crate::sampling::Key;
 use crate::scene::Settings;
@@ -330,17 +330,10 @@ impl Painter for PassPainter<'_> {
     /// One pixel at a time: what is gathered is its own.
     const SIDE: u32 = 1;
 
-    fn trace(
-        &self,
-        rays: &CameraRays,
-        tile: &mut PassTile,
-        counts: &mut RayCounts,
-    ) -> [Rgb; RayPacket::LANES] {
-        let mut radiances = [Rgb::BLACK; RayPacket::LANES];
-        for (radiance, (ray, key)) in radiances.iter_mut().zip(rays.iter()) {
-            *radiance = self.trace_one(ray, key, tile, counts);
+    fn trace(&self, rays: &CameraRays, tile: &mut PassTile, counts: &mut RayCounts, sums: &mut Sums) {
+        for (sum, (ray, key)) in sums.iter_mut().zip(rays.iter()) {
+            *sum += self.trace_one(ray, key, tile, counts);
         }
-        radiances
     }
 
     fn end_pixel(&self, x: u32, y: u32, mean: [f32; 3], tile: &mut PassTile) {

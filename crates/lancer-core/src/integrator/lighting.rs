@@ -1,0 +1,222 @@
+//! What the lights do at the surfaces that a packet of rays has met.
+
+use crate::accel::bits;
+use crate::color::Rgb;
+use crate::geometry::RayPacket;
+use crate::geometry::error::{segment_from_surface, stands_off};
+use crate::geometry::packet::{Vectors, at, put};
+use crate::scene::Light;
+use crate::shade::{Incidence, ShadingPoint, diffuse, specular};
+use crate::world::{Face, Intersection, World};
+use fearless_simd::dispatch;
+
+const LANES: usize = RayPacket::LANES;
+
+/// The surfaces, and what each light adds to them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lighting {
+    surfaces: Surfaces,
+    lights: Vec<Reach>,
+    segments: RayPacket,
+}
+
+/// Surfaces lane by lane, as vector instructions want them; in lanes that hold none, nothing of use.
+#[derive(Clone, Debug, Default)]
+struct Surfaces {
+    point: Vectors,
+    point_error: Vectors,
+    geometric_normal: Vectors,
+    normal: Vectors,
+    to_eye: Vectors,
+    color: Vectors,
+    /// k_d.
+    diffuse: Vectors,
+}
+
+/// How far a light reaches.
+#[derive(Clone, Debug, Default)]
+struct Reach {
+    /// What it adds where nothing hides it.
+    radiance: Vectors,
+    /// The surfaces that it adds to, a bit for each.
+    lit: u32,
+}
+
+/// What is found for all lanes before each is looked at.
+#[derive(Default)]
+struct Incidences {
+    falloff: [f64; LANES],
+    cosine: [f64; LANES],
+    half_cosine: [f64; LANES],
+    /// Whether the light stands clearly off the plane that touches the surface.
+    stands_off: [bool; LANES],
+}
+
+impl Lighting {
+    /// Finds what each light adds at surfaces, up to [`RayPacket::LANES`]; `hidden` tells which of some segments to a
+    /// light meet anything, each of which leaves a face.
+    pub(super) fn find(
+        &mut self,
+        world: &World,
+        surfaces: &[(&Intersection, &ShadingPoint)],
+        mut hidden: impl FnMut(&RayPacket, u32, &[Option<Face>; LANES]) -> u32,
+    ) {
+        let Self { surfaces: lanes, lights: reaches, segments } = self;
+        reaches.resize_with(world.lights().len(), Reach::default);
+        let mut open = 0;
+        for (lane, (surface, point)) in surfaces.iter().enumerate() {
+            lanes.set(lane, surface, point);
+            open |= u32::from(point.material.is_lit()) << lane;
+        }
+        for (light, reach) in world.lights().iter().zip(reaches) {
+            reach.lit = 0;
+            if open == 0 || light.intensity.is_black() {
+                continue;
+            }
+            let mut incidences = Incidences::default();
+            dispatch!(world.level(), _simd => lanes.lit_by(light, reach, &mut incidences, segments));
+            let mut left = [None; LANES];
+            for lane in bits(open) {
+                // Also false for a light in the point itself, whose direction is NaN.
+                let faces_the_light = incidences.cosine[lane] > 0.0;
+                if !faces_the_light {
+                    continue;
+                }
+                let (surface, &ShadingPoint { material, color, .. }) = surfaces[lane];
+                let irradiance = light.intensity * incidences.falloff[lane];
+                let specular = specular(irradiance, material, color, incidences.half_cosine[lane]);
+                let radiance = reach.radiance(lane) + specular;
+                reach.set(lane, radiance);
+                reach.lit |= u32::from(!radiance.is_black()) << lane;
+                left[lane] = incidences.stands_off[lane].then_some(surface.face());
+            }
+            reach.lit &= !hidden(segments, reach.lit, &left);
+        }
+    }
+
+    /// By light: what it adds to a surface, and whether nothing hides it.
+    pub(super) fn at(&self, lane: usize) -> impl Iterator<Item = (Rgb, bool)> {
+        self.lights.iter().map(move |reach| (reach.radiance(lane), reach.lit >> lane & 1 == 1))
+    }
+}
+
+impl Reach {
+    fn radiance(&self, lane: usize) -> Rgb {
+        at(&self.radiance, lane).to_array().into()
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, radiance: Rgb) {
+        put(&mut self.radiance, lane, radiance.to_array().into());
+    }
+}
+
+impl Surfaces {
+    fn set(&mut self, lane: usize, surface: &Intersection, point: &ShadingPoint) {
+        put(&mut self.point, lane, surface.point);
+        put(&mut self.point_error, lane, surface.point_error);
+        put(&mut self.geometric_normal, lane, surface.geometric_normal);
+        put(&mut self.normal, lane, point.normal);
+        put(&mut self.to_eye, lane, point.to_eye);
+        put(&mut self.color, lane, point.color.to_array().into());
+        put(&mut self.diffuse, lane, point.material.diffuse.to_array().into());
+    }
+
+    /// How a light stands to the surfaces, what of it they reflect in all directions, and the segments to it: by scalar
+    /// functions without branches, of which the compiler makes vector code.
+    #[inline(always)]
+    fn lit_by(
+        &self,
+        light: &Light,
+        reach: &mut Reach,
+        incidences: &mut Incidences,
+        segments: &mut RayPacket,
+    ) {
+        let target = light.position;
+        for lane in 0..LANES {
+            let (point, error) = (at(&self.point, lane), at(&self.point_error, lane));
+            let geometric_normal = at(&self.geometric_normal, lane);
+            let to_eye = at(&self.to_eye, lane);
+            let incidence = Incidence::new(point, at(&self.normal, lane), to_eye, target);
+            incidences.falloff[lane] = incidence.falloff;
+            incidences.cosine[lane] = incidence.cosine;
+            incidences.half_cosine[lane] = incidence.half_cosine;
+            let color = |vectors| at(vectors, lane).to_array().into();
+            let irradiance = light.intensity * incidence.falloff;
+            let (coefficient, surface_color): (Rgb, Rgb) = (color(&self.diffuse), color(&self.color));
+            reach.set(lane, diffuse(irradiance, coefficient, surface_color, incidence.cosine));
+            segments.set(lane, &segment_from_surface(point, error, geometric_normal, target));
+            incidences.stands_off[lane] = stands_off(point, error, geometric_normal, target);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{DVec3, Ray, portable};
+    use crate::scene::{Material, Node, Scene, Shape};
+    use crate::shade::LightTerm;
+
+    #[test]
+    fn what_lights_add_is_the_radiance_of_their_terms_bit_for_bit() {
+        let shiny = Material { specular: Rgb::new(0.3, 0.2, 0.1), shininess: 17.0, ..Material::default() };
+        let materials = [
+            Material::default(),
+            Material { metallic: Rgb::grey(0.7), ..shiny.clone() },
+            Material { diffuse: Rgb::BLACK, shininess: 2.5, ..shiny },
+            Material { diffuse: Rgb::BLACK, ..Material::default() },
+        ];
+        let mut scene = Scene::new("ball");
+        scene.add(Node::shape("ball", Shape::Sphere));
+        for (position, intensity) in [
+            (DVec3::new(2.0, 3.0, 4.0), Rgb::new(50.0, 60.0, 70.0)),
+            (DVec3::new(-4.0, 0.1, 0.0), Rgb::new(0.0, 9.0, 0.0)),
+            (DVec3::new(0.0, 1.0, 2.0), Rgb::BLACK),
+            (DVec3::new(0.0, 0.0, 1.0), Rgb::WHITE),
+        ] {
+            scene.add_light(position, intensity);
+        }
+        let world = World::compile(&scene, &Default::default()).unwrap();
+        let mut lighting = Lighting::default();
+        let (mut lit, mut unlit) = (0, 0);
+        for step in 0..40 {
+            let met: Vec<Intersection> = (0..=step % LANES)
+                .map(|lane| {
+                    let (sin, cos) = portable::sin_cos((step * 7 + lane) as f64);
+                    let ray =
+                        Ray::new(DVec3::new(3.0 * sin, 0.3 * cos, 3.0 * cos), DVec3::new(-sin, 0.0, -cos));
+                    let hit = world.intersect(&ray).expect("it goes to the ball's axis");
+                    world.intersection(&ray, &hit)
+                })
+                .collect();
+            let points: Vec<ShadingPoint> = met
+                .iter()
+                .enumerate()
+                .map(|(lane, at)| ShadingPoint {
+                    position: at.point,
+                    normal: at.facing_normal(),
+                    to_eye: at.facing_normal().any_orthonormal_vector(),
+                    color: Rgb::new(0.9, 0.5, 0.1),
+                    material: &materials[(step + lane) % materials.len()],
+                })
+                .collect();
+            let surfaces: Vec<_> = met.iter().zip(&points).collect();
+            let none = |_: &RayPacket, _: u32, _: &[Option<Face>; LANES]| 0;
+            lighting.find(&world, &surfaces, none);
+            for (lane, point) in points.iter().enumerate() {
+                for (light, (radiance, visible)) in world.lights().iter().zip(lighting.at(lane)) {
+                    let term = LightTerm::new(point, light);
+                    assert_eq!(visible, term.is_some());
+                    if let Some(term) = term {
+                        assert_eq!(radiance, term.radiance());
+                        lit += 1;
+                    } else {
+                        unlit += 1;
+                    }
+                }
+            }
+        }
+        assert!(lit > 100 && unlit > 100, "{lit} lit, {unlit} not");
+    }
+}
