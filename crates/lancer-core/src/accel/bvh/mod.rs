@@ -23,6 +23,7 @@ mod tests;
 mod validate;
 
 pub(crate) use boxes::boxes_at;
+pub(crate) use node::LEAF;
 pub use node::{Child, MAX_LEAF, WIDTH, WideNode};
 pub use validate::Defect;
 

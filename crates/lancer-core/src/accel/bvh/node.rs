@@ -39,6 +39,16 @@ impl WideNode {
         Aabb { min: self.min.map(|axis| axis[child]), max: self.max.map(|axis| axis[child]) }
     }
 
+    /// The children as words; see [`Child`].
+    #[inline(always)]
+    pub(crate) fn words(&self) -> [u32; WIDTH] {
+        let mut words = [0; WIDTH];
+        for (word, child) in words.iter_mut().zip(&self.children) {
+            *word = child.0;
+        }
+        words
+    }
+
     pub(super) fn set(&mut self, child: usize, bounds: &Aabb, what: Child) {
         for axis in 0..3 {
             self.min[axis][child] = bounds.min[axis];
@@ -59,7 +69,8 @@ impl WideNode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(u32);
 
-const LEAF: u32 = 1 << 31;
+/// The least word that is a leaf, or none.
+pub(crate) const LEAF: u32 = 1 << 31;
 const FIRST: u32 = (1 << 28) - 1;
 
 impl Child {
@@ -74,6 +85,18 @@ impl Child {
     pub(crate) fn leaf(first: u32, count: u32) -> Self {
         debug_assert!(first < FIRST && (1..=MAX_LEAF as u32).contains(&count));
         Self(LEAF | (count - 1) << 28 | first)
+    }
+
+    /// The child of a word of [`WideNode::words`].
+    #[inline(always)]
+    pub(crate) fn of_word(word: u32) -> Self {
+        Self(word)
+    }
+
+    /// Its word.
+    #[inline(always)]
+    pub(crate) fn word(self) -> u32 {
+        self.0
     }
 
     /// Whether it is a leaf; [`Child::NONE`] claims so too.

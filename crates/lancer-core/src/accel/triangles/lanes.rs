@@ -2,7 +2,8 @@
 //!
 //! Arrays are written out: the closures of `map` are not always inlined, and must be to be vectorised.
 
-use fearless_simd::{Simd, SimdFloat};
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x4, f32x16};
 
 #[inline(always)]
 pub(super) fn splat3<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, v: [f32; 3]) -> [V; 3] {
@@ -40,4 +41,10 @@ pub(super) fn dot<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> V {
 #[inline(always)]
 pub(super) fn cross<S: Simd, V: SimdFloat<S>>(a: [V; 3], b: [V; 3]) -> [V; 3] {
     [a[1].mul_sub(b[2], a[2] * b[1]), a[2].mul_sub(b[0], a[0] * b[2]), a[0].mul_sub(b[1], a[1] * b[0])]
+}
+
+/// Four lanes from each of four.
+#[inline(always)]
+pub(super) fn joined<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> f32x16<S> {
+    a.combine(b).combine(c.combine(d))
 }
