@@ -12,6 +12,7 @@
 
 use super::Stream;
 use crate::geometry::{DVec3, DirectionFan, portable};
+use fearless_simd::{Level, dispatch};
 use std::f64::consts::TAU;
 
 /// The upper half of N evenly spread directions, ready to be shifted for any number of points.
@@ -21,6 +22,7 @@ pub struct HemisphereLattice {
     /// The cosines and the sines of the azimuths, lowest direction first.
     cosines: Vec<f64>,
     sines: Vec<f64>,
+    level: Level,
 }
 
 impl HemisphereLattice {
@@ -31,7 +33,7 @@ impl HemisphereLattice {
             .rev()
             .map(|i| portable::sin_cos(TAU * (f64::from(i) / golden_ratio).fract()))
             .unzip();
-        Self { samples, cosines, sines }
+        Self { samples, cosines, sines, level: Level::new() }
     }
 
     /// N.
@@ -110,15 +112,17 @@ impl<'a> Shift<'a> {
         let cosines = &self.lattice.cosines[first..first + count];
         let sines = &self.lattice.sines[first..first + count];
         let (xs, ys, zs) = (&mut xs[..count], &mut ys[..count], &mut zs[..count]);
-        for i in 0..count {
-            let elevation = fan.lowest + self.step * i as f64;
-            let radius = (1.0 - elevation * elevation).max(0.0).sqrt();
-            let across = radius * (cosines[i] * turn_cos - sines[i] * turn_sin);
-            let along = radius * (sines[i] * turn_cos + cosines[i] * turn_sin);
-            xs[i] = tangent.x * across + bitangent.x * along + normal.x * elevation;
-            ys[i] = tangent.y * across + bitangent.y * along + normal.y * elevation;
-            zs[i] = tangent.z * across + bitangent.z * along + normal.z * elevation;
-        }
+        dispatch!(self.lattice.level, _simd => {
+            for i in 0..count {
+                let elevation = fan.lowest + self.step * i as f64;
+                let radius = (1.0 - elevation * elevation).max(0.0).sqrt();
+                let across = radius * (cosines[i] * turn_cos - sines[i] * turn_sin);
+                let along = radius * (sines[i] * turn_cos + cosines[i] * turn_sin);
+                xs[i] = tangent.x * across + bitangent.x * along + normal.x * elevation;
+                ys[i] = tangent.y * across + bitangent.y * along + normal.y * elevation;
+                zs[i] = tangent.z * across + bitangent.z * along + normal.z * elevation;
+            }
+        });
         fan
     }
 }
