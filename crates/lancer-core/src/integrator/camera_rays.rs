@@ -3,9 +3,19 @@
 use crate::camera::Projection;
 use crate::geometry::{Ray, RayPacket};
 use crate::sampling::Key;
-use std::ops::Range;
 
 const LANES: usize = RayPacket::LANES;
+
+/// A row or a column of the subpixels of some pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// The row or the column of its pixels, from that of the first.
+    pub pixel: u32,
+    /// Which it is within its pixels.
+    pub subpixel: u32,
+    /// Its centre, in pixels from where its pixels start.
+    pub center: f64,
+}
 
 /// Up to sixteen camera rays, and the keys of their random numbers.
 #[derive(Clone, Debug)]
@@ -16,25 +26,27 @@ pub struct CameraRays {
 }
 
 impl CameraRays {
-    /// Aims a ray at the same subpixel of each pixel of a rectangle: at `offset` from their top left corners.
+    /// Aims a ray at the centre of each subpixel in which one of the rows crosses one of the columns, row by row. The
+    /// first pixel is `corner`, and pixels have `samples` by `samples` subpixels.
     ///
     /// # Panics
     /// Where there are more than [`RayPacket::LANES`].
     pub fn aim(
         &mut self,
         projection: &Projection,
-        columns: Range<u32>,
-        rows: Range<u32>,
-        subpixel: u32,
-        offset: (f64, f64),
+        corner: (u32, u32),
+        samples: u32,
+        rows: &[Line],
+        columns: &[Line],
     ) {
         let (mut across, mut down) = ([0.0; LANES], [0.0; LANES]);
         self.count = 0;
-        for y in rows {
-            for x in columns.clone() {
-                across[self.count] = f64::from(x) + offset.0;
-                down[self.count] = f64::from(y) + offset.1;
-                self.keys[self.count] = Key::camera(x, y, subpixel);
+        for row in rows {
+            for column in columns {
+                let (x, y) = (corner.0 + column.pixel, corner.1 + row.pixel);
+                across[self.count] = f64::from(x) + column.center;
+                down[self.count] = f64::from(y) + row.center;
+                self.keys[self.count] = Key::camera(x, y, row.subpixel * samples + column.subpixel);
                 self.count += 1;
             }
         }
@@ -51,7 +63,7 @@ impl CameraRays {
         self.count
     }
 
-    /// The rays, in the order in which their pixels are read.
+    /// The rays, in the order of their subpixels.
     pub fn iter(&self) -> impl Iterator<Item = (Ray, Key)> {
         (0..self.count).map(|lane| (self.packet.ray(lane), self.keys[lane]))
     }

@@ -12,7 +12,7 @@ mod tests;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusionSampler;
-pub use camera_rays::CameraRays;
+pub use camera_rays::{CameraRays, Line};
 pub use listener::{Listener, RayId, RayKind, Silent, SpawnEvent};
 pub use whitted::{Scratch, Whitted};
 

@@ -5,8 +5,8 @@ use crate::camera::{Camera, CameraError, Projection};
 use crate::color::Rgb;
 use crate::film::Image;
 use crate::geometry::RayPacket;
-use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
-use crate::sampling::subpixel_centers;
+use crate::integrator::{CameraRays, Line, RayCounts, Scratch, Whitted};
+use crate::sampling::subpixel_center;
 use crate::scene::{Settings, SettingsError};
 use crate::world::{Media, World};
 use rayon::prelude::*;
@@ -109,8 +109,8 @@ pub fn render(
     frame.render(control, &|rays: &CameraRays,
                             scratch: &mut Scratch,
                             counts: &mut RayCounts,
-                            sums: &mut Sums| {
-        integrator.add_radiances(rays, &media, scratch, counts, sums);
+                            found: &mut Found| {
+        integrator.add_radiances(rays, &media, scratch, counts, found);
     })
 }
 
@@ -128,9 +128,9 @@ pub fn render_occlusion(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts, sums: &mut Sums| {
-        for (sum, occlusion) in sums.iter_mut().zip(integrator.occlusions(rays, counts)) {
-            *sum += Rgb::grey(occlusion);
+    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts, found: &mut Found| {
+        for (found, occlusion) in found.iter_mut().zip(integrator.occlusions(rays, counts)) {
+            *found = Rgb::grey(occlusion);
         }
     })
 }
@@ -140,6 +140,8 @@ pub(super) struct Frame {
     pub(super) projection: Projection,
     /// Subpixels along a pixel's side.
     pub(super) samples: u32,
+    /// The rows, and the columns, of the subpixels of a block.
+    lines: Vec<Line>,
     pub(super) region: Region,
 }
 
@@ -155,7 +157,13 @@ impl Frame {
         if !region.fits(width, height) {
             return Err(RenderError::Region { region, width, height });
         }
-        Ok(Self { projection: camera.project(width, height)?, samples, region })
+        let line = |i| Line {
+            pixel: i / samples,
+            subpixel: i % samples,
+            center: subpixel_center(i % samples, samples),
+        };
+        let lines = (0..BLOCK * samples).map(line).collect();
+        Ok(Self { projection: camera.project(width, height)?, samples, lines, region })
     }
 
     /// Renders what `painter` finds for each camera ray.
@@ -189,12 +197,13 @@ pub(super) trait Painter: Sync {
     /// Before the first ray of a tile.
     fn begin_tile(&self) -> Self::Tile;
 
-    /// Pixels are painted together in squares of so many by so many, at most [`BLOCK`]. Of 1, they come one by one, in
-    /// reading order.
+    /// Pixels are painted together in squares of so many by so many, at most [`BLOCK`], and so are their subpixels. Of 1,
+    /// they come one by one, in reading order.
     const SIDE: u32;
 
-    /// Adds what camera rays yield, one of each pixel of a square; something unfinished once the render is cancelled.
-    fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts, sums: &mut Sums);
+    /// Finds what camera rays yield, and adds it to the black that is there; something unfinished once the render is
+    /// cancelled.
+    fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts, found: &mut Found);
 
     /// All rays of the pixel at a column and a row of the image were traced.
     fn end_pixel(&self, _x: u32, _y: u32, _mean: [f32; 3], _tile: &mut Self::Tile) {}
@@ -206,10 +215,10 @@ pub(super) trait Painter: Sync {
 /// The side of the square of pixels whose rays fill a packet.
 pub(super) const BLOCK: u32 = 4;
 
-/// The sum of what the camera rays of each pixel of a square yield.
-pub(super) type Sums = [Rgb; RayPacket::LANES];
+/// What each of some camera rays yields.
+pub(super) type Found = [Rgb; RayPacket::LANES];
 
-impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Sums) + Sync> Painter for F {
+impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Found) + Sync> Painter for F {
     type Tile = Scratch;
 
     fn begin_tile(&self) -> Scratch {
@@ -218,8 +227,8 @@ impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Sums) + Sync> Painter
 
     const SIDE: u32 = BLOCK;
 
-    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, sums: &mut Sums) {
-        self(rays, scratch, counts, sums);
+    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, found: &mut Found) {
+        self(rays, scratch, counts, found);
     }
 }
 
@@ -249,11 +258,11 @@ impl<P: Painter> Job<'_, P> {
         let mut counts = RayCounts::default();
         let mut kept = self.painter.begin_tile();
         let mut pixels = vec![[0.0; 3]; area.width as usize * area.height as usize];
-        let mut rays = CameraRays::default();
+        let mut work = Work::default();
         for block in tiles_of(&area, P::SIDE) {
             let place = Region { x: area.x + block.x, y: area.y + block.y, ..block };
             // After a panic what is kept and the counts are dropped with the tile.
-            let trace = AssertUnwindSafe(|| self.block(&place, &mut rays, &mut kept, &mut counts));
+            let trace = AssertUnwindSafe(|| self.block(&place, &mut work, &mut kept, &mut counts));
             match catch_unwind(trace) {
                 Ok(means) => {
                     let rows = (block.y..block.y + block.height).map(|y| y as usize);
@@ -289,19 +298,38 @@ impl<P: Painter> Job<'_, P> {
     fn block(
         &self,
         place: &Region,
-        rays: &mut CameraRays,
+        work: &mut Work,
         kept: &mut P::Tile,
         counts: &mut RayCounts,
     ) -> Option<[[f32; 3]; RayPacket::LANES]> {
-        let Frame { projection, samples, .. } = &self.frame;
+        let Frame { projection, samples, lines, .. } = &self.frame;
         let Region { x, y, width, height } = self.in_image(place);
-        let mut sums = [Rgb::BLACK; RayPacket::LANES];
-        for (subpixel, center) in subpixel_centers(*samples).enumerate() {
-            rays.aim(projection, x..x + width, y..y + height, subpixel as u32, center);
-            self.painter.trace(rays, kept, counts, &mut sums);
-            // Afterwards: what was cancelled on its way is unfinished.
-            if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
-                return None;
+        let Work { rays, radiances } = work;
+        radiances.resize((samples * samples) as usize, Found::default());
+        // Rays of neighbouring subpixels go much the same way, so squares of them are traced together.
+        for rows in lines[..(height * samples) as usize].chunks(P::SIDE as usize) {
+            for columns in lines[..(width * samples) as usize].chunks(P::SIDE as usize) {
+                rays.aim(projection, (x, y), *samples, rows, columns);
+                let mut found = Found::default();
+                self.painter.trace(rays, kept, counts, &mut found);
+                let mut found = found.iter();
+                for row in rows {
+                    for (column, found) in columns.iter().zip(&mut found) {
+                        let pixel = (row.pixel * width + column.pixel) as usize;
+                        let subpixel = (row.subpixel * samples + column.subpixel) as usize;
+                        radiances[subpixel][pixel] = *found;
+                    }
+                }
+                // Afterwards: what was cancelled on its way is unfinished.
+                if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
+                    return None;
+                }
+            }
+        }
+        let mut sums = Found::default();
+        for radiances in radiances {
+            for (sum, radiance) in sums.iter_mut().zip(radiances) {
+                *sum += *radiance;
             }
         }
         let scale = 1.0 / f64::from(samples * samples);
@@ -312,6 +340,14 @@ impl<P: Painter> Job<'_, P> {
         }
         Some(means)
     }
+}
+
+/// Memory that blocks leave to the next.
+#[derive(Default)]
+struct Work {
+    rays: CameraRays,
+    /// By subpixel, then by pixel of a block.
+    radiances: Vec<Found>,
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {

@@ -9,8 +9,7 @@ mod key;
 pub use hemisphere::HemisphereLattice;
 pub use key::{Branch, Key, Stream};
 
-/// The offsets of the centres of n x n subpixels from a pixel's top left corner, row by row.
-pub fn subpixel_centers(n: u32) -> impl Iterator<Item = (f64, f64)> {
-    let center = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
-    (0..n).flat_map(move |j| (0..n).map(move |i| (center(i), center(j))))
+/// Where the centre of the `i`-th of `n` subpixels lies along a pixel's side, from 0 to 1.
+pub fn subpixel_center(i: u32, n: u32) -> f64 {
+    (f64::from(i) + 0.5) / f64::from(n)
 }

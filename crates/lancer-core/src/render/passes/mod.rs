@@ -18,7 +18,7 @@ mod names;
 
 pub use names::{UnknownPass, light_names, select};
 
-use super::driver::{Frame, Painter, Sums};
+use super::driver::{Found, Frame, Painter};
 use super::features::seen;
 use super::{Control, Region, Render, RenderError};
 use crate::accel::Visits;
@@ -330,9 +330,9 @@ impl Painter for PassPainter<'_> {
     /// One pixel at a time: what is gathered is its own.
     const SIDE: u32 = 1;
 
-    fn trace(&self, rays: &CameraRays, tile: &mut PassTile, counts: &mut RayCounts, sums: &mut Sums) {
-        for (sum, (ray, key)) in sums.iter_mut().zip(rays.iter()) {
-            *sum += self.trace_one(ray, key, tile, counts);
+    fn trace(&self, rays: &CameraRays, tile: &mut PassTile, counts: &mut RayCounts, found: &mut Found) {
+        for (found, (ray, key)) in found.iter_mut().zip(rays.iter()) {
+            *found = self.trace_one(ray, key, tile, counts);
         }
     }
 

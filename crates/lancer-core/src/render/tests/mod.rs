@@ -10,11 +10,13 @@ use crate::Rgb;
 use crate::accel::{Accelerator, KdSettings};
 use crate::camera::Camera;
 use crate::geometry::{DVec3, Transform};
+use crate::integrator::{Silent, Whitted};
 use crate::mesh::Mesh;
+use crate::sampling::Key;
 use crate::scene::{AmbientOcclusion, Material, Node, Scene, Settings, Shape};
 use crate::simd::InstructionSet;
 use crate::testing::ball;
-use crate::world::{CompileOptions, World};
+use crate::world::{CompileOptions, Media, World};
 
 /// Every kind of ray over every kind of geometry.
 fn scene() -> Scene {
@@ -137,6 +139,33 @@ fn a_pixel_is_the_mean_of_its_subpixels() {
             let mean = subpixels.map(|(x, y)| f64::from(fine.pixel(x, y)[channel])).sum::<f64>() / 9.0;
             let found = f64::from(coarse.pixel(x, y)[channel]);
             assert!((found - mean).abs() < 1e-5 * mean.max(1.0), "pixel {x},{y}: {found} is not {mean}");
+        }
+    }
+}
+
+#[test]
+fn pixels_are_sums_in_the_order_of_their_subpixels_whichever_are_traced_together() {
+    let scene = scene();
+    let world = World::compile(&scene, &CompileOptions::default()).unwrap();
+    let media = Media::around(&world, scene.camera.eye);
+    let region = Region { x: 25, y: 20, width: 7, height: 5 };
+    let projection = scene.camera.project(61, 47).unwrap();
+    for samples in [1, 2, 3, 5] {
+        let settings = Settings { samples, ..scene.settings };
+        let found = render(&world, &scene.camera, &settings, Some(region), &Control::default()).unwrap();
+        let integrator = Whitted::new(&world, &settings);
+        for (x, y) in (0..7).flat_map(|x| (0..5).map(move |y| (x, y))) {
+            let mut sum = Rgb::BLACK;
+            for subpixel in 0..samples * samples {
+                let center = |i: u32| (f64::from(i) + 0.5) / f64::from(samples);
+                let (across, down) = (center(subpixel % samples), center(subpixel / samples));
+                let ray = projection.ray(f64::from(x + 25) + across, f64::from(y + 20) + down);
+                let key = Key::camera(x + 25, y + 20, subpixel);
+                let (mut scratch, mut counts) = Default::default();
+                sum += integrator.radiance(ray, &media, key, &mut scratch, &mut counts, &mut Silent);
+            }
+            let mean = (sum * (1.0 / f64::from(samples * samples))).to_array().map(|channel| channel as f32);
+            assert_eq!(found.image.pixel(x, y), mean, "pixel {x},{y} of {samples} x {samples} subpixels");
         }
     }
 }
