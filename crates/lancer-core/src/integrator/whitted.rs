@@ -327,11 +327,15 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         let world = self.integrator.world;
         let mut met = [None; LANES];
         world.intersections(rays, hits, &mut met);
+        let worth_seeing = world.worth_seeing(rays, &met);
         let mut arrivals = ArrayVec::<Arrival, LANES>::new();
         for (lane, at) in met.iter_mut().enumerate() {
             let Some(at) = at else { continue };
             let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
-            let touching = world.see(&ray, at, self.tally);
+            let touching = match worth_seeing >> lane & 1 {
+                1 => world.see(&ray, at, self.tally),
+                _ => Vec::new(),
+            };
             let material = world.material(at.material);
             let point = ShadingPoint {
                 position: at.point,

@@ -6,7 +6,7 @@
 use super::{Hit, Intersection, ObjectId, World};
 use crate::accel::{Tally, Uncounted};
 use crate::geometry::error::leave_surface;
-use crate::geometry::{DVec3, Ray};
+use crate::geometry::{DVec3, Ray, RayPacket};
 use arrayvec::ArrayVec;
 
 /// The transmissive objects around a point, the one entered last at the end.
@@ -109,6 +109,11 @@ impl Media {
 /// A direction that no scene's edges are likely to follow.
 const OUTWARD: DVec3 = DVec3::new(0.437_216_12, 0.829_301_7, 0.348_027_9);
 
+const LANES: usize = RayPacket::LANES;
+
+/// So many dielectrics are looked at together. Untuned.
+const TOGETHER: u32 = 3;
+
 /// Surfaces that a search for the media around a point goes through before it takes the rest for outside.
 const MAX_CROSSINGS: usize = 10_000;
 
@@ -132,6 +137,27 @@ impl World {
             }
             None => touching,
         }
+    }
+
+    /// Which of the rays that have `met` surfaces [`World::see`] has to look at: all but those that have met dielectrics
+    /// that touch nothing, as almost all dielectrics do.
+    pub(crate) fn worth_seeing(&self, rays: &RayPacket, met: &[Option<Intersection>; LANES]) -> u32 {
+        let mut segments = RayPacket::default();
+        let mut own = [ObjectId(0); LANES];
+        let mut dielectric = 0;
+        for (lane, at) in met.iter().enumerate() {
+            if let Some(at) = at
+                && !self.material(at.material).transmit.is_black()
+            {
+                segments.set(lane, &across(at, rays.ray(lane).direction));
+                own[lane] = at.object;
+                dielectric |= 1 << lane;
+            }
+        }
+        if u32::count_ones(dielectric) < TOGETHER {
+            return dielectric;
+        }
+        self.may_meet_others(&segments, dielectric, &own)
     }
 
     /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in

@@ -53,6 +53,20 @@ impl World {
         occluded
     }
 
+    /// Which of the rays `wanted` of a packet may meet anything but the objects `excluded`, of which each ray has one.
+    pub(super) fn may_meet_others(&self, rays: &RayPacket, wanted: u32, excluded: &[ObjectId; LANES]) -> u32 {
+        let mut met = 0;
+        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
+            let others =
+                bits(lanes).filter(|&lane| excluded[lane] != id).fold(0, |set, lane| set | 1 << lane);
+            if others != 0 {
+                met |= object.occluded_packet(rays, others, &[None; LANES], self);
+            }
+            met
+        });
+        met | wanted & !visited
+    }
+
     /// Calls `visit` with the objects that some of the rays `wanted` may meet, and with which. It may lower the t up
     /// to which a ray's hits still count, and returns the rays that are done with. Returns the rays that it was called
     /// for: the others are to be traced one by one.
