@@ -31,6 +31,11 @@ impl AmbientOcclusionSampler {
         Self { cancel: cancel.clone(), ..self }
     }
 
+    /// Whether N is not 0.
+    pub(super) fn is_wanted(&self) -> bool {
+        self.lattice.samples() > 0
+    }
+
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
     pub fn factor(&self, world: &World, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
         self.factor_tallied(world, at, key, counts, &Uncounted)
@@ -45,7 +50,7 @@ impl AmbientOcclusionSampler {
         counts: &mut RayCounts,
         tally: &impl Tally,
     ) -> f64 {
-        if self.lattice.samples() == 0 {
+        if !self.is_wanted() {
             return 1.0;
         }
         let mut sum = 0.0;

@@ -6,28 +6,23 @@ use crate::geometry::RayPacket;
 use crate::geometry::error::{segment_from_surface, stands_off};
 use crate::geometry::packet::{Vectors, at, put};
 use crate::scene::Light;
-use crate::shade::{Incidence, ShadingPoint, diffuse, specular};
-use crate::world::{Face, Intersection, World};
+use crate::shade::{Incidence, diffuse, specular};
+use crate::world::{Face, Intersections, Look, World};
 use fearless_simd::dispatch;
 
 const LANES: usize = RayPacket::LANES;
 
-/// The surfaces, and what each light adds to them.
+/// What each light adds to surfaces.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lighting {
-    surfaces: Surfaces,
+    looks: Looks,
     lights: Vec<Reach>,
     segments: RayPacket,
 }
 
-/// Surfaces lane by lane, as vector instructions want them; in lanes that hold none, nothing of use.
+/// What surfaces are made of, lane by lane as vector instructions want it.
 #[derive(Clone, Debug, Default)]
-struct Surfaces {
-    point: Vectors,
-    point_error: Vectors,
-    geometric_normal: Vectors,
-    normal: Vectors,
-    to_eye: Vectors,
+struct Looks {
     color: Vectors,
     /// k_d.
     diffuse: Vectors,
@@ -53,42 +48,48 @@ struct Incidences {
 }
 
 impl Lighting {
-    /// Finds what each light adds at surfaces, up to [`RayPacket::LANES`]; `hidden` tells which of some segments to a
-    /// light meet anything, each of which leaves a face.
+    /// Finds what each light adds to the surfaces that rays have met; `hidden` tells which of some segments to a light
+    /// meet anything, each of which leaves a face.
     pub(super) fn find(
         &mut self,
         world: &World,
-        surfaces: &[(&Intersection, &ShadingPoint)],
+        rays: &RayPacket,
+        met: &Intersections,
+        looks: &[Option<Look>; LANES],
         mut hidden: impl FnMut(&RayPacket, u32, &[Option<Face>; LANES]) -> u32,
     ) {
-        let Self { surfaces: lanes, lights: reaches, segments } = self;
+        let Self { looks: lanes, lights: reaches, segments } = self;
         reaches.resize_with(world.lights().len(), Reach::default);
         let mut open = 0;
-        for (lane, (surface, point)) in surfaces.iter().enumerate() {
-            lanes.set(lane, surface, point);
-            open |= u32::from(point.material.is_lit()) << lane;
+        for (lane, look) in looks.iter().enumerate() {
+            if let Some(look) = look.filter(|look| look.material.is_lit()) {
+                put(&mut lanes.color, lane, look.color.to_array().into());
+                put(&mut lanes.diffuse, lane, look.material.diffuse.to_array().into());
+                open |= 1 << lane;
+            }
         }
         for (light, reach) in world.lights().iter().zip(reaches) {
             reach.lit = 0;
-            if open == 0 || light.intensity.is_black() {
+            if open == 0_u32 || light.intensity.is_black() {
                 continue;
             }
             let mut incidences = Incidences::default();
-            dispatch!(world.level(), _simd => lanes.lit_by(light, reach, &mut incidences, segments));
+            dispatch!(world.level(), _simd => {
+                lanes.lit_by(light, rays, met, reach, &mut incidences, segments);
+            });
             let mut left = [None; LANES];
             for lane in bits(open) {
                 // Also false for a light in the point itself, whose direction is NaN.
                 let faces_the_light = incidences.cosine[lane] > 0.0;
-                if !faces_the_light {
+                let Some(Look { material, color }) = looks[lane].filter(|_| faces_the_light) else {
                     continue;
-                }
-                let (surface, &ShadingPoint { material, color, .. }) = surfaces[lane];
+                };
                 let irradiance = light.intensity * incidences.falloff[lane];
                 let specular = specular(irradiance, material, color, incidences.half_cosine[lane]);
                 let radiance = reach.radiance(lane) + specular;
                 reach.set(lane, radiance);
                 reach.lit |= u32::from(!radiance.is_black()) << lane;
-                left[lane] = incidences.stands_off[lane].then_some(surface.face());
+                left[lane] = met.face(lane).filter(|_| incidences.stands_off[lane]);
             }
             reach.lit &= !hidden(segments, reach.lit, &left);
         }
@@ -111,40 +112,32 @@ impl Reach {
     }
 }
 
-impl Surfaces {
-    fn set(&mut self, lane: usize, surface: &Intersection, point: &ShadingPoint) {
-        put(&mut self.point, lane, surface.point);
-        put(&mut self.point_error, lane, surface.point_error);
-        put(&mut self.geometric_normal, lane, surface.geometric_normal);
-        put(&mut self.normal, lane, point.normal);
-        put(&mut self.to_eye, lane, point.to_eye);
-        put(&mut self.color, lane, point.color.to_array().into());
-        put(&mut self.diffuse, lane, point.material.diffuse.to_array().into());
-    }
-
-    /// How a light stands to the surfaces, what of it they reflect in all directions, and the segments to it: by scalar
+impl Looks {
+    /// How a light stands to surfaces, what of it they reflect in all directions, and the segments to it: by scalar
     /// functions without branches, of which the compiler makes vector code.
     #[inline(always)]
     fn lit_by(
         &self,
         light: &Light,
+        rays: &RayPacket,
+        met: &Intersections,
         reach: &mut Reach,
         incidences: &mut Incidences,
         segments: &mut RayPacket,
     ) {
         let target = light.position;
         for lane in 0..LANES {
-            let (point, error) = (at(&self.point, lane), at(&self.point_error, lane));
-            let geometric_normal = at(&self.geometric_normal, lane);
-            let to_eye = at(&self.to_eye, lane);
-            let incidence = Incidence::new(point, at(&self.normal, lane), to_eye, target);
+            let (point, error) = (at(&met.surfaces.point, lane), at(&met.surfaces.point_error, lane));
+            let geometric_normal = at(&met.surfaces.geometric_normal, lane);
+            let to_eye = -at(&rays.direction, lane);
+            let incidence = Incidence::new(point, met.facing_normal(lane), to_eye, target);
             incidences.falloff[lane] = incidence.falloff;
             incidences.cosine[lane] = incidence.cosine;
             incidences.half_cosine[lane] = incidence.half_cosine;
-            let color = |vectors| at(vectors, lane).to_array().into();
             let irradiance = light.intensity * incidence.falloff;
-            let (coefficient, surface_color): (Rgb, Rgb) = (color(&self.diffuse), color(&self.color));
-            reach.set(lane, diffuse(irradiance, coefficient, surface_color, incidence.cosine));
+            let coefficient = at(&self.diffuse, lane).to_array().into();
+            let color = at(&self.color, lane).to_array().into();
+            reach.set(lane, diffuse(irradiance, coefficient, color, incidence.cosine));
             segments.set(lane, &segment_from_surface(point, error, geometric_normal, target));
             incidences.stands_off[lane] = stands_off(point, error, geometric_normal, target);
         }
@@ -156,7 +149,7 @@ mod tests {
     use super::*;
     use crate::geometry::{DVec3, Ray, portable};
     use crate::scene::{Material, Node, Scene, Shape};
-    use crate::shade::LightTerm;
+    use crate::shade::{LightTerm, ShadingPoint};
 
     #[test]
     fn what_lights_add_is_the_radiance_of_their_terms_bit_for_bit() {
@@ -179,34 +172,35 @@ mod tests {
         }
         let world = World::compile(&scene, &Default::default()).unwrap();
         let mut lighting = Lighting::default();
+        let mut met = Intersections::default();
         let (mut lit, mut unlit) = (0, 0);
         for step in 0..40 {
-            let met: Vec<Intersection> = (0..=step % LANES)
-                .map(|lane| {
-                    let (sin, cos) = portable::sin_cos((step * 7 + lane) as f64);
-                    let ray =
-                        Ray::new(DVec3::new(3.0 * sin, 0.3 * cos, 3.0 * cos), DVec3::new(-sin, 0.0, -cos));
-                    let hit = world.intersect(&ray).expect("it goes to the ball's axis");
-                    world.intersection(&ray, &hit)
-                })
-                .collect();
-            let points: Vec<ShadingPoint> = met
-                .iter()
-                .enumerate()
-                .map(|(lane, at)| ShadingPoint {
+            let mut rays = RayPacket::default();
+            let wanted = 0xffff >> (step % LANES);
+            for lane in bits(wanted) {
+                let (sin, cos) = portable::sin_cos((step * 7 + lane) as f64);
+                let origin = DVec3::new(3.0 * sin, 0.3 * cos, 3.0 * cos);
+                rays.set(lane, &Ray::new(origin, DVec3::new(-sin, 0.1, -cos).normalize()));
+            }
+            met.find(&world, &rays, &world.intersect_packet(&rays, wanted));
+            let mut looks = [None; LANES];
+            for lane in bits(wanted) {
+                let material = &materials[(step + lane) % materials.len()];
+                looks[lane] = Some(Look { material, color: Rgb::new(0.9, 0.5, 0.1) });
+            }
+            lighting.find(&world, &rays, &met, &looks, |_, _, _| 0);
+            for lane in bits(wanted) {
+                let (at, ray) = (met.at(&world, lane).expect("it goes to the ball"), rays.ray(lane));
+                let Some(Look { material, color }) = looks[lane] else { continue };
+                let point = ShadingPoint {
                     position: at.point,
                     normal: at.facing_normal(),
-                    to_eye: at.facing_normal().any_orthonormal_vector(),
-                    color: Rgb::new(0.9, 0.5, 0.1),
-                    material: &materials[(step + lane) % materials.len()],
-                })
-                .collect();
-            let surfaces: Vec<_> = met.iter().zip(&points).collect();
-            let none = |_: &RayPacket, _: u32, _: &[Option<Face>; LANES]| 0;
-            lighting.find(&world, &surfaces, none);
-            for (lane, point) in points.iter().enumerate() {
+                    to_eye: -ray.direction,
+                    color,
+                    material,
+                };
                 for (light, (radiance, visible)) in world.lights().iter().zip(lighting.at(lane)) {
-                    let term = LightTerm::new(point, light);
+                    let term = LightTerm::new(&point, light);
                     assert_eq!(visible, term.is_some());
                     if let Some(term) = term {
                         assert_eq!(radiance, term.radiance());

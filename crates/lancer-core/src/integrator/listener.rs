@@ -48,8 +48,8 @@ pub struct SpawnEvent<'a> {
 /// nothing. Calls for one ray come together, [`begin_ray`](Self::begin_ray) first; rays come breadth first. A
 /// ray's terms times its throughput add up, over all rays, to the radiance.
 pub trait Listener {
-    /// Whether it is to hear of the terms of lights: making them anew for whoever does costs less than keeping them.
-    const HEARS_LIGHTS: bool = true;
+    /// Whether it is to be told anything: what nobody hears of is not made.
+    const HEARS: bool = true;
 
     /// A ray is about to be traced; `throughput` is the product of the coefficients on its path.
     fn begin_ray(&mut self, _id: RayId, _kind: RayKind, _throughput: Rgb, _ray: &Ray) {}
@@ -71,5 +71,5 @@ pub trait Listener {
 pub struct Silent;
 
 impl Listener for Silent {
-    const HEARS_LIGHTS: bool = false;
+    const HEARS: bool = false;
 }

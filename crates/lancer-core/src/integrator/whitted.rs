@@ -15,8 +15,7 @@ use crate::geometry::{DVec3, Ray, RayPacket};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Face, Hit, Intersection, Media, Touching, World};
-use arrayvec::ArrayVec;
+use crate::world::{Face, Hit, Intersection, Intersections, Look, Media, Touching, World};
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -36,6 +35,7 @@ pub struct Whitted<'w> {
 pub struct Scratch {
     /// For each camera ray of a packet.
     pending: [VecDeque<PendingRay>; LANES],
+    met: Intersections,
     lighting: Lighting,
 }
 
@@ -144,9 +144,9 @@ impl<'w> Whitted<'w> {
         tally: &T,
         sums: &mut [Rgb; LANES],
     ) {
-        let Scratch { pending, lighting } = scratch;
+        let Scratch { pending, met, lighting } = scratch;
         let mut walk =
-            Walk { integrator: self, pending, lighting, counts, listeners, tally, next_id: [1; LANES] };
+            Walk { integrator: self, pending, met, lighting, counts, listeners, tally, next_id: [1; LANES] };
         let mut radiances = [Rgb::BLACK; LANES];
         walk.run(rays, media, &mut radiances);
         for (sum, radiance) in sums.iter_mut().zip(radiances) {
@@ -161,17 +161,16 @@ impl<'w> Whitted<'w> {
 
     /// c_a at the surfaces that camera rays meet; 1 where one meets none.
     ///
-    /// With the keys of [`Whitted::radiances`] they are the factors of the ambient terms that are found there.
+    /// With the keys of [`Whitted::add_radiances`] they are the factors of the ambient terms that are found there.
     pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
         counts.primary += rays.count() as u64;
         let hits = self.intersect(rays.packet(), rays.lanes(), &Uncounted);
-        let mut met = [None; LANES];
-        self.world.intersections(rays.packet(), &hits, &mut met);
+        let mut met = Intersections::default();
+        self.world.seen(rays.packet(), &hits, &mut met, &Uncounted);
         let mut occlusions = [1.0; LANES];
-        for (lane, at) in met.iter_mut().enumerate() {
-            if let Some(at) = at {
-                self.world.see(&rays.packet().ray(lane), at, &Uncounted);
-                occlusions[lane] = self.occlusion_at(at, rays.keys()[lane], counts);
+        for (lane, occlusion) in occlusions.iter_mut().enumerate() {
+            if let Some(at) = met.at(self.world, lane) {
+                *occlusion = self.occlusion_at(&at, rays.keys()[lane], counts);
             }
         }
         occlusions
@@ -205,6 +204,19 @@ impl<'w> Whitted<'w> {
             .fold(0, |occluded, lane| occluded | 1 << lane)
     }
 
+    fn wants_reflection(&self, material: &Material) -> bool {
+        self.reflection && !material.reflect.is_black()
+    }
+
+    fn wants_refraction(&self, material: &Material) -> bool {
+        self.refraction && !material.transmit.is_black()
+    }
+
+    /// Whether rays go on from surfaces of a material.
+    fn goes_on(&self, material: &Material) -> bool {
+        self.wants_reflection(material) || self.wants_refraction(material)
+    }
+
     /// c_a at a surface, by the key of the ray that met it.
     pub fn occlusion_at(&self, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
         self.occlusion.factor(self.world, at, key, counts)
@@ -218,6 +230,7 @@ const WORTH_A_PACKET: u32 = 4;
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
     pending: &'a mut [VecDeque<PendingRay>; LANES],
+    met: &'a mut Intersections,
     lighting: &'a mut Lighting,
     counts: &'a mut RayCounts,
     listeners: &'a mut [L],
@@ -226,7 +239,7 @@ struct Walk<'a, 'w, L, T> {
     next_id: [u32; LANES],
 }
 
-/// A surface that a ray has met, ready for its terms.
+/// A surface that a ray has met, and from which it may go on.
 struct Arrival<'a> {
     /// Which camera ray it comes from.
     lane: usize,
@@ -236,8 +249,8 @@ struct Arrival<'a> {
     ray: Ray,
     at: &'a Intersection,
     /// Other dielectrics whose surfaces coincide with this one.
-    touching: Vec<Touching>,
-    point: ShadingPoint<'a>,
+    touching: &'a [Touching],
+    material: &'a Material,
 }
 
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
@@ -325,64 +338,66 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;
-        let mut met = [None; LANES];
-        world.intersections(rays, hits, &mut met);
-        let worth_seeing = world.worth_seeing(rays, &met);
-        let mut arrivals = ArrayVec::<Arrival, LANES>::new();
-        for (lane, at) in met.iter_mut().enumerate() {
-            let Some(at) = at else { continue };
-            let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
-            let touching = match worth_seeing >> lane & 1 {
-                1 => world.see(&ray, at, self.tally),
-                _ => Vec::new(),
-            };
-            let material = world.material(at.material);
-            let point = ShadingPoint {
-                position: at.point,
-                normal: at.facing_normal(),
-                to_eye: -ray.direction,
-                color: material.color.color_at(at.uv) * at.vertex_color,
-                material,
-            };
-            arrivals.push(Arrival { lane, id, path, key, ray, at, touching, point });
+        let touching = world.seen(rays, hits, self.met, self.tally);
+        let mut looks = [None; LANES];
+        for (lane, look) in looks.iter_mut().enumerate() {
+            *look = self.met.look(world, lane);
         }
-        self.find_lighting(&arrivals);
-        for (index, arrival) in arrivals.iter().enumerate() {
-            let &Arrival { lane, path, .. } = arrival;
-            self.listeners[lane].begin_ray(id, path.kind, path.throughput, &arrival.ray);
-            self.listeners[lane].surface(arrival.at, arrival.point.color);
-            let radiance = self.ambient(arrival) + self.lights(index, arrival);
+        self.find_lighting(rays, &looks);
+        for (lane, look) in looks.into_iter().enumerate() {
+            let Some(Look { material, color }) = look else { continue };
+            let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
+            let goes_on = path.depth > 0 && self.integrator.goes_on(material);
+            // Light alone needs no more of the surface than has been looked at.
+            let wanted = L::HEARS || goes_on || self.integrator.occlusion.is_wanted();
+            let at = wanted.then(|| self.met.at(world, lane)).flatten();
+            let listener = &mut self.listeners[lane];
+            listener.begin_ray(id, path.kind, path.throughput, &ray);
+            let mut point = None;
+            if L::HEARS
+                && let Some(at) = &at
+            {
+                listener.surface(at, color);
+                let (normal, to_eye) = (at.facing_normal(), -ray.direction);
+                point = Some(ShadingPoint { position: at.point, normal, to_eye, color, material });
+            }
+            let ambient = self.ambient(lane, at.as_ref(), key, material.ambient, color);
+            let radiance = ambient + self.lights(lane, point.as_ref());
             radiances[lane] += radiance * path.throughput;
-            if path.depth > 0 {
-                self.continue_paths(arrival);
+            if let Some(at) = at.as_ref().filter(|_| goes_on) {
+                let touching = touching.iter().find(|(other, _)| *other == lane);
+                let touching = touching.map_or(&[][..], |(_, touching)| touching);
+                self.continue_paths(&Arrival { lane, id, path, key, ray, at, touching, material });
             }
         }
     }
 
-    /// c_a L_a k_a S.
-    fn ambient(&mut self, arrival: &Arrival) -> Rgb {
-        let Arrival { point, .. } = arrival;
-        let mut term = AmbientTerm {
-            occlusion: 1.0,
-            light: self.integrator.world.ambient(),
-            coefficient: point.material.ambient,
-            color: point.color,
-        };
+    /// c_a L_a k_a S. Where nothing is known of the surface c_a is 1.
+    fn ambient(
+        &mut self,
+        lane: usize,
+        at: Option<&Intersection>,
+        key: Key,
+        coefficient: Rgb,
+        color: Rgb,
+    ) -> Rgb {
+        let light = self.integrator.world.ambient();
+        let mut term = AmbientTerm { occlusion: 1.0, light, coefficient, color };
         if term.radiance().is_black() {
             return Rgb::BLACK;
         }
-        let world = self.integrator.world;
-        let sampler = &self.integrator.occlusion;
-        term.occlusion = sampler.factor_tallied(world, arrival.at, arrival.key, self.counts, self.tally);
-        self.listeners[arrival.lane].ambient(&term);
+        if let Some(at) = at {
+            let Whitted { world, occlusion, .. } = self.integrator;
+            term.occlusion = occlusion.factor_tallied(world, at, key, self.counts, self.tally);
+        }
+        self.listeners[lane].ambient(&term);
         term.radiance()
     }
 
     /// Finds what each light adds to each surface.
-    fn find_lighting(&mut self, arrivals: &[Arrival]) {
-        let Self { integrator, lighting, counts, tally, .. } = self;
-        let surfaces: ArrayVec<_, LANES> = arrivals.iter().map(|at| (at.at, &at.point)).collect();
-        lighting.find(integrator.world, &surfaces, |segments, wanted, left| {
+    fn find_lighting(&mut self, rays: &RayPacket, looks: &[Option<Look>; LANES]) {
+        let Self { integrator, met, lighting, counts, tally, .. } = self;
+        lighting.find(integrator.world, rays, met, looks, |segments, wanted, left| {
             if !integrator.shadows {
                 return 0;
             }
@@ -391,15 +406,13 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         });
     }
 
-    /// The sum over the lights, in their order.
-    fn lights(&mut self, index: usize, arrival: &Arrival) -> Rgb {
+    /// The sum over the lights, in their order; `point` is for whoever listens.
+    fn lights(&mut self, lane: usize, point: Option<&ShadingPoint>) -> Rgb {
         let lights = self.integrator.world.lights();
         let mut sum = Rgb::BLACK;
-        for (place, (light, (radiance, visible))) in lights.iter().zip(self.lighting.at(index)).enumerate() {
-            if L::HEARS_LIGHTS
-                && let Some(term) = LightTerm::new(&arrival.point, light)
-            {
-                self.listeners[arrival.lane].light(place, light, &term, visible);
+        for (place, (light, (radiance, visible))) in lights.iter().zip(self.lighting.at(lane)).enumerate() {
+            if let Some(term) = point.and_then(|point| LightTerm::new(point, light)) {
+                self.listeners[lane].light(place, light, &term, visible);
             }
             if visible {
                 sum += radiance;
@@ -410,12 +423,9 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
 
     /// Queues L_r and L_t where they are wanted and their coefficients are not zero.
     fn continue_paths(&mut self, arrival: &Arrival) {
-        let material = arrival.point.material;
-        let wants_reflection = self.integrator.reflection && !material.reflect.is_black();
-        let wants_refraction = self.integrator.refraction && !material.transmit.is_black();
-        if !wants_reflection && !wants_refraction {
-            return;
-        }
+        let material = arrival.material;
+        let wants_reflection = self.integrator.wants_reflection(material);
+        let wants_refraction = self.integrator.wants_refraction(material);
         let bend = Bend::new(self.integrator.world, arrival);
         let (reflect, transmit) = bend.weights(material);
         let mirrored = mirror_direction(arrival.at, arrival.ray.direction);
@@ -485,12 +495,12 @@ impl Bend {
     fn new(world: &World, arrival: &Arrival) -> Self {
         let (at, media) = (arrival.at, &arrival.path.media);
         let direction = arrival.ray.direction;
-        let cosine = -direction.dot(arrival.point.normal);
-        if arrival.point.material.transmit.is_black() {
-            let (ior_before, ior_after) = (media.ior(world), arrival.point.material.ior);
+        let cosine = -direction.dot(at.facing_normal());
+        if arrival.material.transmit.is_black() {
+            let (ior_before, ior_after) = (media.ior(world), arrival.material.ior);
             return Self { ior_before, ior_after, media_after: media.clone(), refracted: None, cosine };
         }
-        let interface = media.interface(world, at, &arrival.touching);
+        let interface = media.interface(world, at, arrival.touching);
         let (ior_before, ior_after) = (interface.ior_before, interface.ior_after);
         Self {
             ior_before,

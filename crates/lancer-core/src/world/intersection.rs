@@ -1,17 +1,18 @@
 //! A hit with everything that shading wants to know of it.
 
 use super::{Hit, Object, ObjectId, World};
+use crate::accel::bits;
 use crate::color::Rgb;
 use crate::geometry::error::{ray_from_surface, segment_from_surface, stands_off};
-use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket};
-use crate::scene::MaterialId;
+use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket, packet};
+use crate::scene::{Material, MaterialId};
 use crate::shape::{self, SurfacePoint, SurfacePoints};
 use fearless_simd::dispatch;
 
 const LANES: usize = RayPacket::LANES;
 
 /// So many hits with an object are worth vector code. Untuned.
-const TOGETHER: usize = 3;
+const TOGETHER: u32 = 3;
 
 /// A triangle or another face of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,50 +109,116 @@ impl Intersection {
     }
 }
 
-impl World {
-    /// Puts the surfaces at hits of a packet into `found`, which is empty: each as [`World::intersection`] finds it.
-    pub(crate) fn intersections(
-        &self,
-        rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
-        found: &mut [Option<Intersection>; LANES],
-    ) {
-        for lane in 0..LANES {
-            let Some(hit) = hits[lane].filter(|_| found[lane].is_none()) else { continue };
-            let alike = |other: &Option<Hit>| other.filter(|other| other.object == hit.object);
-            let hits = hits.each_ref().map(alike);
-            if hits.iter().flatten().count() >= TOGETHER {
-                self.intersections_with(self.object(hit.object), rays, &hits, found);
+/// What a surface reflects: its material, and S, its colour there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look<'w> {
+    pub(crate) material: &'w Material,
+    pub(crate) color: Rgb,
+}
+
+/// The surfaces at hits of a packet, lane by lane as vector instructions want them; where there is no hit, nothing of use.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Intersections {
+    /// In the world.
+    pub(crate) surfaces: SurfacePoints,
+    /// See [`Intersection::from_inside`].
+    pub(crate) from_inside: [bool; LANES],
+    hits: [Option<Hit>; LANES],
+}
+
+impl Intersections {
+    /// Finds the surfaces at hits of a packet, each as [`World::intersection`] finds it, in place of those that were
+    /// there: they are too large to be handed on.
+    pub(crate) fn find(&mut self, world: &World, rays: &RayPacket, hits: &[Option<Hit>; LANES]) {
+        self.hits = *hits;
+        let mut found = 0;
+        for (lane, hit) in hits.iter().enumerate() {
+            let Some(hit) = hit.filter(|_| found >> lane & 1 == 0) else { continue };
+            let alike = hits.each_ref().map(|other| other.filter(|other| other.object == hit.object));
+            let lanes = (0..LANES).fold(0, |set, lane| set | u32::from(alike[lane].is_some()) << lane);
+            let object = world.object(hit.object);
+            if lanes.count_ones() < TOGETHER {
+                for lane in bits(lanes) {
+                    if let Some(hit) = hits[lane] {
+                        self.put(lane, &world.intersection(&rays.ray(lane), &hit));
+                    }
+                }
+            } else if found == 0 {
+                self.find_on(world, object, rays, &alike);
             } else {
-                found[lane] = Some(self.intersection(&rays.ray(lane), &hit));
+                let mut others = Self::default();
+                others.find_on(world, object, rays, &alike);
+                for lane in bits(lanes) {
+                    self.surfaces.put(lane, &others.surfaces.at(lane));
+                    self.from_inside[lane] = others.from_inside[lane];
+                }
             }
+            found |= lanes;
         }
     }
 
-    /// Adds the surfaces at hits with one object.
-    fn intersections_with(
-        &self,
-        object: &Object,
-        rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
-        found: &mut [Option<Intersection>; LANES],
-    ) {
-        let mut from_inside = [false; LANES];
-        let mut surfaces = SurfacePoints::default();
-        dispatch!(self.level, _simd => {
+    /// The surfaces at hits with one object.
+    fn find_on(&mut self, world: &World, object: &Object, rays: &RayPacket, hits: &[Option<Hit>; LANES]) {
+        let Self { surfaces, from_inside, .. } = self;
+        dispatch!(world.level, _simd => {
             let rays = object.placement.rays_to_object(rays);
-            object.geometry.surfaces(&rays, hits, &self.meshes, &mut surfaces);
+            object.geometry.surfaces(&rays, hits, &world.meshes, surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {
                 let surface = surfaces.at(lane);
                 *from_inside = is_from_inside(&surface, &rays.ray(lane));
                 surfaces.put(lane, &to_world(&object.placement, &surface));
             }
         });
-        for lane in 0..LANES {
-            if let Some(hit) = &hits[lane] {
-                found[lane] = Some(Intersection::at(object, hit, &surfaces.at(lane), from_inside[lane]));
-            }
-        }
+    }
+
+    /// Puts another hit of the same ray, and its surface, in the place of that which was there.
+    pub(crate) fn put(&mut self, lane: usize, at: &Intersection) {
+        let &Intersection { t, object, primitive, from_inside, .. } = at;
+        self.hits[lane] = Some(Hit { t, object, primitive });
+        self.from_inside[lane] = from_inside;
+        let surface = SurfacePoint {
+            point: at.point,
+            point_error: at.point_error,
+            geometric_normal: at.geometric_normal,
+            shading_normal: at.shading_normal,
+            uv: at.uv,
+            vertex_color: at.vertex_color,
+        };
+        self.surfaces.put(lane, &surface);
+    }
+
+    /// The rays that hit, a bit for each.
+    pub(crate) fn lanes(&self) -> u32 {
+        (0..LANES).fold(0, |set, lane| set | u32::from(self.hits[lane].is_some()) << lane)
+    }
+
+    /// What a ray hits.
+    pub(crate) fn at(&self, world: &World, lane: usize) -> Option<Intersection> {
+        self.hits[lane].as_ref().map(|hit| {
+            let object = world.object(hit.object);
+            Intersection::at(object, hit, &self.surfaces.at(lane), self.from_inside[lane])
+        })
+    }
+
+    /// The face that a ray hits.
+    pub(crate) fn face(&self, lane: usize) -> Option<Face> {
+        self.hits[lane].map(|Hit { object, primitive, .. }| Face { object, primitive })
+    }
+
+    /// The material of what a ray hits, and its colour there.
+    pub(crate) fn look<'w>(&self, world: &'w World, lane: usize) -> Option<Look<'w>> {
+        let material = world.material(world.object(self.hits[lane]?.object).material);
+        let [u, v] = &self.surfaces.uv;
+        let vertex_color: Rgb = packet::at(&self.surfaces.vertex_color, lane).to_array().into();
+        let color = material.color.color_at(DVec2::new(u[lane], v[lane])) * vertex_color;
+        Some(Look { material, color })
+    }
+
+    /// N of the illumination model; see [`Intersection::facing_normal`].
+    #[inline(always)]
+    pub(crate) fn facing_normal(&self, lane: usize) -> DVec3 {
+        let normal = packet::at(&self.surfaces.shading_normal, lane);
+        if self.from_inside[lane] { -normal } else { normal }
     }
 }
 

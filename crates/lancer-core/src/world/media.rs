@@ -3,8 +3,8 @@
 //! Dielectrics may be nested, may overlap and may touch. The medium is that of the object entered last; objects
 //! are remembered one by one, so that leaving an outer one while inside an inner one changes nothing.
 
-use super::{Hit, Intersection, ObjectId, World};
-use crate::accel::{Tally, Uncounted};
+use super::{Hit, Intersection, Intersections, ObjectId, World};
+use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::error::leave_surface;
 use crate::geometry::{DVec3, Ray, RayPacket};
 use arrayvec::ArrayVec;
@@ -139,17 +139,38 @@ impl World {
         }
     }
 
-    /// Which of the rays that have `met` surfaces [`World::see`] has to look at: all but those that have met dielectrics
-    /// that touch nothing, as almost all dielectrics do.
-    pub(crate) fn worth_seeing(&self, rays: &RayPacket, met: &[Option<Intersection>; LANES]) -> u32 {
+    /// Finds the surfaces that count where rays of a packet hit, and the dielectrics that touch them, by ray, where any do.
+    pub(crate) fn seen(
+        &self,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
+        met: &mut Intersections,
+        tally: &impl Tally,
+    ) -> Vec<(usize, Vec<Touching>)> {
+        met.find(self, rays, hits);
+        let mut touching = Vec::new();
+        for lane in bits(self.worth_seeing(rays, met)) {
+            let Some(mut at) = met.at(self, lane) else { continue };
+            let others = self.see(&rays.ray(lane), &mut at, tally);
+            met.put(lane, &at);
+            if !others.is_empty() {
+                touching.push((lane, others));
+            }
+        }
+        touching
+    }
+
+    /// Which of the rays that have met surfaces [`World::see`] has to look at: those that have met dielectrics, without
+    /// those that touch nothing for sure, as almost all do.
+    fn worth_seeing(&self, rays: &RayPacket, met: &Intersections) -> u32 {
         let mut segments = RayPacket::default();
         let mut own = [ObjectId(0); LANES];
         let mut dielectric = 0;
-        for (lane, at) in met.iter().enumerate() {
-            if let Some(at) = at
+        for lane in bits(met.lanes()) {
+            if let Some(at) = met.at(self, lane)
                 && !self.material(at.material).transmit.is_black()
             {
-                segments.set(lane, &across(at, rays.ray(lane).direction));
+                segments.set(lane, &across(&at, rays.ray(lane).direction));
                 own[lane] = at.object;
                 dielectric |= 1 << lane;
             }

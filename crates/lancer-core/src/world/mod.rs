@@ -29,6 +29,7 @@ mod tests;
 pub use compile::{CompileControl, CompileOptions};
 pub use error::CompileError;
 pub use intersection::{Face, Intersection};
+pub(crate) use intersection::{Intersections, Look};
 pub use media::Media;
 pub(crate) use media::Touching;
 

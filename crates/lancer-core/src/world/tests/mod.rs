@@ -113,6 +113,7 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
     data.colors = (0..vertices).map(|_| [(); 3].map(|()| random.between(0.0, 1.0) as f32)).collect();
     let painted = Arc::new(Mesh::new(data).unwrap());
     let mut together = 0;
+    let mut met = Intersections::default();
     for seed in 0..4 {
         let mut scene = crowd(seed);
         for _ in 0..20 {
@@ -130,11 +131,11 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
                     packet.set(lane, &Ray { direction, ..first });
                 }
                 let hits = world.intersect_packet(&packet, 0xfff7);
-                let mut met = [None; RayPacket::LANES];
-                world.intersections(&packet, &hits, &mut met);
-                for (lane, met) in met.into_iter().enumerate() {
-                    let alone = hits[lane].map(|hit| world.intersection(&packet.ray(lane), &hit));
-                    assert_eq!(met, alone, "{instructions:?} {:?}", packet.ray(lane));
+                met.find(&world, &packet, &hits);
+                for (lane, hit) in hits.iter().enumerate() {
+                    let ray = packet.ray(lane);
+                    let alone = hit.map(|hit| world.intersection(&ray, &hit));
+                    assert_eq!(met.at(&world, lane), alone, "{instructions:?} {ray:?}");
                 }
                 let alike =
                     |hit: &Hit| hits.iter().flatten().filter(|other| other.object == hit.object).count();
