@@ -166,15 +166,12 @@ impl Placement {
         }
     }
 
-    /// The rays in the object's space, each as [`Placement::ray_to_object`] would carry it there.
+    /// Puts the rays in the object's space into `local`, each as [`Placement::ray_to_object`] would carry it there.
     #[inline(always)]
-    pub fn rays_to_object(&self, rays: &RayPacket) -> RayPacket {
-        let zero = [[0.0; RayPacket::LANES]; 3];
-        let mut local = RayPacket { origin: zero, direction: zero, t_max: rays.t_max };
+    pub fn rays_to_object(&self, rays: &RayPacket, local: &mut RayPacket) {
         for lane in 0..RayPacket::LANES {
             local.set(lane, &self.ray_to_object(&rays.ray(lane)));
         }
-        local
     }
 
     /// The image in the world of a point of the object.

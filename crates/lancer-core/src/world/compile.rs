@@ -127,12 +127,14 @@ impl World {
             background: scene.background,
             bounded: Vec::new(),
             unbounded: Vec::new(),
+            frames: Vec::new(),
             index: ObjectIndex::None,
             bounds: Bounds::EMPTY,
             options: *options,
             level: options.level(),
         };
         world.index_objects(cancel)?;
+        world.find_frames();
         Ok(world)
     }
 
@@ -141,6 +143,28 @@ impl World {
     fn prepared_for(&self, options: &CompileOptions) -> HashMap<usize, &Arc<PreparedMesh>> {
         let meshes = if self.options == *options { &self.meshes[..] } else { &[] };
         meshes.iter().map(|prepared| (address(&prepared.mesh), prepared)).collect()
+    }
+
+    /// Finds the frames of meshes.
+    fn find_frames(&mut self) {
+        let meshes = &self.meshes;
+        let bounds_of = |object: &Object| object.geometry.mesh_index().map(|mesh| meshes[mesh].mesh.bounds());
+        for alike in self.objects.chunk_by_mut(|a, b| a.placement == b.placement) {
+            let around = alike.iter().filter_map(bounds_of).fold(Bounds::EMPTY, Bounds::union);
+            let size = |bounds: &Bounds| bounds.magnitude().max_element();
+            let shared = self.frames.len() as u32;
+            self.frames.push(around);
+            for object in alike {
+                object.frame = shared;
+                // The precision of rays made ready for all would be too little for what is much smaller.
+                if let Some(bounds) =
+                    bounds_of(object).filter(|own| size(own) * ALIKE_IN_SIZE < size(&around))
+                {
+                    object.frame = self.frames.len() as u32;
+                    self.frames.push(bounds);
+                }
+            }
+        }
     }
 
     /// Sorts objects into bounded and unbounded ones and builds the tree over the former.
@@ -172,6 +196,10 @@ impl World {
         Ok(())
     }
 }
+
+/// Of meshes that share a frame, none is smaller than the greatest by more. `f32` then tells places on it apart by a part
+/// in 2^18 of its size, far finer than the boxes of its triangles. Untuned.
+const ALIKE_IN_SIZE: f64 = 64.0;
 
 fn index_triangles(
     mesh: &Mesh,
@@ -297,7 +325,7 @@ fn flatten(scene: &Scene, drawn: &[u64], cancel: &CancelToken, out: &mut Flat) -
             let placement = Placement::new(world_from_node)
                 .map_err(|_| CompileError::Singular { node: name_of(scene, id) })?;
             let geometry = out.geometry(shape);
-            out.objects.push(Object { placement, geometry, material, node: id });
+            out.objects.push(Object { placement, frame: 0, geometry, material, node: id });
         }
         stack.extend(node.children.iter().rev().map(|&child| (child, world_from_node, material)));
     }

@@ -160,9 +160,11 @@ impl Intersections {
     /// The surfaces at hits with one object.
     fn find_on(&mut self, world: &World, object: &Object, rays: &RayPacket, hits: &[Option<Hit>; LANES]) {
         let Self { surfaces, from_inside, .. } = self;
+        let mut local = RayPacket::default();
         dispatch!(world.level, _simd => {
-            let rays = object.placement.rays_to_object(rays);
-            object.geometry.surfaces(&rays, hits, &world.meshes, surfaces);
+            object.placement.rays_to_object(rays, &mut local);
+            let rays = &local;
+            object.geometry.surfaces(rays, hits, &world.meshes, surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {
                 let surface = surfaces.at(lane);
                 *from_inside = is_from_inside(&surface, &rays.ray(lane));

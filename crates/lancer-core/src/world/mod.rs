@@ -58,6 +58,8 @@ impl ObjectId {
 #[derive(Clone, Debug)]
 pub struct Object {
     placement: Placement,
+    /// The place in [`World::frames`] of the bounds that its rays are made ready for, if it is a mesh.
+    frame: u32,
     geometry: Geometry,
     material: MaterialId,
     node: NodeId,
@@ -104,6 +106,9 @@ pub struct World {
     /// The objects with finite boxes, in the order of the tree's primitives.
     bounded: Vec<ObjectId>,
     unbounded: Vec<ObjectId>,
+    /// For meshes of one placement that follow each other, the bounds around them in their space: rays are carried there
+    /// and made ready once for all of them.
+    frames: Vec<Bounds>,
     index: ObjectIndex,
     bounds: Bounds,
     /// How it was compiled.

@@ -3,7 +3,7 @@
 use super::geometry::Geometry;
 use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, Visitor, walk_packet};
+use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
 use crate::geometry::{Placement, Ray, RayPacket};
 use crate::shape::{self, plane, sphere};
@@ -18,8 +18,9 @@ impl World {
         let mut best: [Option<Hit>; LANES] = [None; LANES];
         // A hit at the same t is looked at too: the lower object is to win.
         let mut up_to = rays.t_max;
+        let mut local = Local::default();
         let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, t_max| {
-            let hits = object.intersect_packet(rays, &up_to, lanes, self);
+            let hits = object.intersect_packet(rays, &mut local, &up_to, lanes, self);
             for lane in bits(lanes) {
                 let Some(shape::Hit { t, primitive }) = hits[lane] else { continue };
                 if best[lane].is_none_or(|best| (t, id) < (best.t, best.object)) {
@@ -41,9 +42,10 @@ impl World {
     /// among them need no test, which would be too close to tell.
     pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
         let mut occluded = 0;
+        let mut local = Local::default();
         let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
             let own = left.map(|face| face.filter(|face| face.object == id).map(|face| face.primitive));
-            let hit = object.occluded_packet(rays, lanes, &own, self);
+            let hit = object.occluded_packet(rays, &mut local, lanes, &own, self);
             occluded |= hit;
             hit
         });
@@ -56,11 +58,12 @@ impl World {
     /// Which of the rays `wanted` of a packet may meet anything but the objects `excluded`, of which each ray has one.
     pub(super) fn may_meet_others(&self, rays: &RayPacket, wanted: u32, excluded: &[ObjectId; LANES]) -> u32 {
         let mut met = 0;
+        let mut local = Local::default();
         let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
             let others =
                 bits(lanes).filter(|&lane| excluded[lane] != id).fold(0, |set, lane| set | 1 << lane);
             if others != 0 {
-                met |= object.occluded_packet(rays, others, &[None; LANES], self);
+                met |= object.occluded_packet(rays, &mut local, others, &[None; LANES], self);
             }
             met
         });
@@ -97,9 +100,9 @@ impl World {
         let mut out_of_range = 0;
         dispatch!(self.level, simd => {
             let mut packet = NarrowPacket::default();
-            packet.prepare(&rays, left, &self.bounds);
-            out_of_range = packet.out_of_range;
-            let mut open = packet.ready;
+            packet.prepare(&rays, &self.bounds);
+            out_of_range = packet.out_of_range & left;
+            let mut open = packet.ready & left;
             let objects = &self.bounded;
             let mut visitor = Leaves { packet: &packet, visit: |leaf: Child, mut lanes, t_max: &mut [f64; LANES]| {
                 for &candidate in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
@@ -137,15 +140,46 @@ impl<F: FnMut(Child, u32, &mut [f64; LANES]) -> u32> Visitor for Leaves<'_, F> {
     }
 }
 
+/// Rays in the space of the object that was looked at last.
+#[derive(Default)]
+struct Local {
+    /// The frame that they are ready for.
+    frame: Option<u32>,
+    ready: ReadyRays,
+}
+
+impl Local {
+    /// Carries rays to a mesh, unless they are there, and lets hits count up to `up_to`, which has not grown.
+    fn prepare(&mut self, rays: &RayPacket, up_to: &[f64; LANES], object: &Object, world: &World) {
+        let known = self.frame == Some(object.frame);
+        self.frame = Some(object.frame);
+        let ready = &mut self.ready;
+        dispatch!(world.level, _simd => {
+            if known {
+                ready.shorten(up_to);
+            } else {
+                object.placement.rays_to_object(rays, &mut ready.rays);
+                ready.rays.t_max = *up_to;
+                ready.prepare(&world.frames[object.frame as usize]);
+            }
+        });
+    }
+}
+
 impl Object {
     /// The nearest hits of the rays `wanted`, each with t in (0, `up_to`).
     fn intersect_packet(
         &self,
         rays: &RayPacket,
+        local: &mut Local,
         up_to: &[f64; LANES],
         wanted: u32,
         world: &World,
     ) -> [Option<shape::Hit>; LANES] {
+        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
+            local.prepare(rays, up_to, self, world);
+            return tree.intersect_packet(&local.ready, wanted);
+        }
         let mut hits = [None; LANES];
         if let Some(nearest) = self.nearest_on_one_face(world.level, rays, up_to) {
             for lane in bits(wanted) {
@@ -153,13 +187,9 @@ impl Object {
             }
             return hits;
         }
-        let mut local = self.rays_to_object(world.level, rays);
-        local.t_max = *up_to;
-        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
-            return tree.intersect_packet(&local, wanted);
-        }
         for lane in bits(wanted) {
-            hits[lane] = self.geometry.intersect(&local.ray(lane), &world.meshes, &Uncounted);
+            let ray = Ray { t_max: up_to[lane], ..self.placement.ray_to_object(&rays.ray(lane)) };
+            hits[lane] = self.geometry.intersect(&ray, &world.meshes, &Uncounted);
         }
         hits
     }
@@ -168,25 +198,25 @@ impl Object {
     fn occluded_packet(
         &self,
         rays: &RayPacket,
+        local: &mut Local,
         wanted: u32,
         own: &[Option<u32>; LANES],
         world: &World,
     ) -> u32 {
+        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
+            local.prepare(rays, &rays.t_max, self, world);
+            return tree.occluded_packet(&local.ready, wanted, own);
+        }
         if let Some(nearest) = self.nearest_on_one_face(world.level, rays, &rays.t_max) {
             return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest[lane] < f64::INFINITY) << lane)
                 & wanted;
         }
-        let local = self.rays_to_object(world.level, rays);
-        if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
-            return tree.occluded_packet(&local, wanted, own);
-        }
         bits(wanted)
-            .filter(|&lane| self.geometry.occluded(&local.ray(lane), &world.meshes, &Uncounted))
+            .filter(|&lane| {
+                let ray = self.placement.ray_to_object(&rays.ray(lane));
+                self.geometry.occluded(&ray, &world.meshes, &Uncounted)
+            })
             .fold(0, |hit, lane| hit | 1 << lane)
-    }
-
-    fn rays_to_object(&self, level: Level, rays: &RayPacket) -> RayPacket {
-        dispatch!(level, _simd => self.placement.rays_to_object(rays))
     }
 
     /// Of a shape that is one face: the t at which each ray meets it first, infinite where that is not before `up_to`.

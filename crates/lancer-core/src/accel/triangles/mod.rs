@@ -15,7 +15,7 @@ mod tests;
 mod walk;
 
 pub(crate) use fan::Receiver;
-pub(crate) use packet::{Beam, DONE, Lane, NarrowPacket, Visitor, walk_packet};
+pub(crate) use packet::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
 
@@ -149,12 +149,13 @@ impl TriangleTree {
         }
     }
 
-    /// The nearest hits of the rays `wanted` of a packet, each as [`TriangleTree::intersect`] would find it.
-    pub(crate) fn intersect_packet(&self, rays: &RayPacket, wanted: u32) -> [Option<Hit>; RayPacket::LANES] {
+    /// The nearest hits of the rays `wanted` of a packet, each as [`TriangleTree::intersect`] would find it. They have been
+    /// made ready for bounds that hold those of the tree.
+    pub(crate) fn intersect_packet(&self, rays: &ReadyRays, wanted: u32) -> [Option<Hit>; RayPacket::LANES] {
         let (mut hits, left_over) =
             dispatch!(self.level, simd => packet::intersect(simd, self, rays, wanted));
         for lane in bits(left_over) {
-            hits[lane] = self.intersect(&rays.ray(lane), &Uncounted);
+            hits[lane] = self.intersect(&rays.rays.ray(lane), &Uncounted);
         }
         hits
     }
@@ -162,14 +163,14 @@ impl TriangleTree {
     /// Which of the rays `wanted` of a packet hit anything; `own` are triangles that they cannot hit.
     pub(crate) fn occluded_packet(
         &self,
-        rays: &RayPacket,
+        rays: &ReadyRays,
         wanted: u32,
         own: &[Option<u32>; RayPacket::LANES],
     ) -> u32 {
         let (mut occluded, left_over) =
             dispatch!(self.level, simd => packet::occluded(simd, self, rays, wanted, own));
         for lane in bits(left_over) {
-            occluded |= u32::from(self.occluded(&rays.ray(lane), &Uncounted)) << lane;
+            occluded |= u32::from(self.occluded(&rays.rays.ray(lane), &Uncounted)) << lane;
         }
         occluded
     }

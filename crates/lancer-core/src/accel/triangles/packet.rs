@@ -58,10 +58,9 @@ pub(crate) struct NarrowPacket {
 }
 
 impl NarrowPacket {
-    /// Prepares the rays `wanted` for what lies within `bounds`, in place of what the packet held: it is too large to be
-    /// handed on.
+    /// Prepares rays for what lies within `bounds`, in place of what the packet held: it is too large to be handed on.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, rays: &RayPacket, wanted: u32, bounds: &Bounds) {
+    pub(crate) fn prepare(&mut self, rays: &RayPacket, bounds: &Bounds) {
         let (mut meets, mut fits) = ([false; LANES], [false; LANES]);
         for lane in 0..LANES {
             let clipped = Clipped::new(&rays.ray(lane), bounds);
@@ -74,8 +73,6 @@ impl NarrowPacket {
             self.ready |= u32::from(meets[lane] & fits[lane]) << lane;
             self.out_of_range |= u32::from(!fits[lane]) << lane;
         }
-        self.ready &= wanted;
-        self.out_of_range &= wanted;
     }
 
     #[inline(always)]
@@ -149,6 +146,30 @@ impl NarrowPacket {
         }
         *open &= !group;
         Some((group, backward))
+    }
+}
+
+/// Rays in the space of some meshes, ready for their triangles.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReadyRays {
+    pub(crate) rays: RayPacket,
+    narrow: NarrowPacket,
+}
+
+impl ReadyRays {
+    /// Makes `rays` ready for what lies within `bounds`.
+    #[inline(always)]
+    pub(crate) fn prepare(&mut self, bounds: &Bounds) {
+        self.narrow.prepare(&self.rays, bounds);
+    }
+
+    /// Lets hits count up to other `t_max`, none greater than it was.
+    #[inline(always)]
+    pub(crate) fn shorten(&mut self, t_max: &[f64; LANES]) {
+        self.rays.t_max = *t_max;
+        for (lane, &t_max) in t_max.iter().enumerate() {
+            self.narrow.end[lane] = self.narrow.up_to(lane, t_max);
+        }
     }
 }
 
@@ -387,13 +408,11 @@ fn test<S: Simd>(
 pub(super) fn intersect<S: Simd>(
     simd: S,
     tree: &TriangleTree,
-    rays: &RayPacket,
+    rays: &ReadyRays,
     wanted: u32,
 ) -> ([Option<Hit>; LANES], u32) {
-    let mut packet = NarrowPacket::default();
-    packet.prepare(rays, wanted, &tree.bounds);
-    let packet = &packet;
-    let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
+    let ReadyRays { rays, narrow: packet } = rays;
+    let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
     let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
     let mut ends = packet.end;
     let mut searched = 0;
@@ -541,14 +560,12 @@ impl<S: Simd> LeafVisitor for Alone<'_, '_, S> {
 pub(super) fn occluded<S: Simd>(
     simd: S,
     tree: &TriangleTree,
-    rays: &RayPacket,
+    rays: &ReadyRays,
     wanted: u32,
     own: &[Option<u32>; LANES],
 ) -> (u32, u32) {
-    let mut packet = NarrowPacket::default();
-    packet.prepare(rays, wanted, &tree.bounds);
-    let packet = &packet;
-    let (mut open, mut left_over) = (packet.ready, packet.out_of_range);
+    let ReadyRays { rays, narrow: packet } = rays;
+    let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
     let mut search = OcclusionSearch { simd, tree, packet, rays, own, occluded: 0 };
     while let Some((group, backward)) = packet.octant(&mut open) {
         if group.count_ones() <= ALONE {

@@ -167,9 +167,15 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
         let trees: Vec<_> = levels().map(|level| build(&mesh, level)).collect();
         for _ in 0..120 {
             let (packet, wanted) = packet(&mut random, &mesh);
+            let mut ready = ReadyRays::default();
+            ready.rays = packet.clone();
+            // Also for more than the mesh: one among others of its space.
+            let bounds = mesh.bounds();
+            let more = bounds.diagonal() * random.between(0.0, 30.0) * random.between(0.0, 1.0).round();
+            ready.prepare(&Bounds::new(bounds.min - more, bounds.max + more * 0.5));
             for tree in &trees {
-                let nearest = tree.intersect_packet(&packet, wanted);
-                let occluded = tree.occluded_packet(&packet, wanted, &[None; RayPacket::LANES]);
+                let nearest = tree.intersect_packet(&ready, wanted);
+                let occluded = tree.occluded_packet(&ready, wanted, &[None; RayPacket::LANES]);
                 assert_eq!(occluded & !wanted, 0);
                 for (lane, nearest) in nearest.into_iter().enumerate() {
                     let is_wanted = wanted >> lane & 1 == 1;
