@@ -322,9 +322,10 @@ fn shading_normal(interpolated: DVec3, geometric_normal: DVec3) -> DVec3 {
     if reciprocal.is_finite() & (reciprocal > 0.0) { unit } else { geometric_normal }
 }
 
-/// How far a hit may lie from the triangle that it was found on.
+/// How far a hit may lie from the triangle that it was found on: as far along each axis as along the one on which
+/// coordinates are the largest, since the test that the next ray takes mixes them.
 fn error_on(mesh: &Mesh) -> DVec3 {
-    mesh.bounds().magnitude() * gamma(ON_TRIANGLE)
+    DVec3::splat(mesh.bounds().magnitude().max_element() * gamma(ON_TRIANGLE))
 }
 
 /// Rounded operations between a mesh's vertices and a hit on one of its triangles, there and back: three

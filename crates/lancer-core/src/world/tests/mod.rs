@@ -226,6 +226,43 @@ fn no_ray_escapes_from_a_closed_mesh() {
     }
 }
 
+/// A mesh may be far thinner along one axis than it is long, as a drawn floor is: the rounding of a test against it mixes
+/// all axes.
+#[test]
+fn a_ray_that_leaves_a_flat_mesh_never_meets_it_again() {
+    let mut random = Random::new(17);
+    let mut left = 0;
+    while left < 40_000 {
+        let (length, tilt) = (random.between(0.1, 100.0), random.between(0.0, 1e-5));
+        let corner = |random: &mut Random| {
+            let [x, y, z] = random.point(1.0).to_array();
+            [(x * length) as f32, (y * tilt - 0.02) as f32, (z * length) as f32]
+        };
+        let positions = vec![corner(&mut random), corner(&mut random), corner(&mut random)];
+        let world = by_brute_force(&mesh_scene(
+            MeshData { positions, indices: vec![[0, 1, 2]], ..MeshData::default() },
+            Transform::IDENTITY,
+        ));
+        let bounds = world.bounds();
+        for _ in 0..20 {
+            let inside =
+                |random: &mut Random, axis: usize| random.between(bounds.min[axis], bounds.max[axis]);
+            let target = DVec3::new(inside(&mut random, 0), -0.02, inside(&mut random, 2));
+            let eye = DVec3::new(0.0, random.between(0.1, 50.0), 0.0)
+                + random.point(100.0) * DVec3::new(1.0, 0.0, 1.0);
+            let ray = Ray::new(eye, (target - eye).normalize());
+            let Some(hit) = world.intersect(&ray) else { continue };
+            let at = world.intersection(&ray, &hit);
+            let light = DVec3::new(0.0, random.between(0.1, 500.0), 0.0)
+                + random.point(1000.0) * DVec3::new(1.0, 0.0, 1.0);
+            assert!(!world.occluded(&at.segment_to(light)), "{ray:?} {light}");
+            let direction = (light - at.point).normalize();
+            assert_eq!(world.intersect(&at.spawn(direction)), None, "{ray:?} {direction}");
+            left += 1;
+        }
+    }
+}
+
 /// A million rays in all: what leaves a convex mesh outward never meets it.
 #[test]
 fn a_ray_that_leaves_a_convex_mesh_never_meets_it_again() {
