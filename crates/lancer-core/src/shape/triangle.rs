@@ -71,8 +71,19 @@ impl Order {
 pub struct TriangleHit {
     /// The ray's parameter there.
     pub t: f64,
+    /// How far that may be from the true one. A ray that starts on a triangle or behind it may seem to meet it so far
+    /// ahead, the further the thinner it is.
+    pub t_error: f64,
     /// Weights of the three corners; they add up to 1.
     pub barycentric: [f64; 3],
+}
+
+impl TriangleHit {
+    /// Whether it is ahead for sure, and nearer than `t_max`. Without branches.
+    #[inline(always)]
+    fn is_within(&self, t_max: f64) -> bool {
+        (self.t > self.t_error) & (self.t < t_max)
+    }
 }
 
 impl ShearedRay {
@@ -94,6 +105,8 @@ impl ShearedRay {
     }
 
     /// The same without branches: where there is no hit, its t is NaN.
+    ///
+    /// Source of the bound on the error: Pharr, Jakob, Humphreys, "Physically Based Rendering" (4th ed.), section 6.8.7.
     #[inline(always)]
     fn meet(&self, corners: &[[f32; 3]; 3]) -> TriangleHit {
         let [a, b, c] = corners;
@@ -106,8 +119,15 @@ impl ShearedRay {
         let determinant = u + v + w;
         let t = self.shear[2] * (u * az + v * bz + w * cz) / determinant;
         let misses = (some_negative & some_positive) | (determinant == 0.0);
+        let largest = |a: f64, b: f64, c: f64| a.abs().max(b.abs()).max(c.abs());
+        let (x, y, z) = (largest(ax, bx, cx), largest(ay, by, cy), largest(az, bz, cz));
+        let (x_error, y_error, z_error) = (gamma(5) * (x + z), gamma(5) * (y + z), gamma(3) * z);
+        let edge = largest(u, v, w);
+        let edge_error = 2.0 * (gamma(2) * x * y + y_error * x + x_error * y);
+        let sum_error = 3.0 * (gamma(3) * edge * z + edge_error * z + z_error * edge);
         TriangleHit {
             t: if misses { f64::NAN } else { t },
+            t_error: sum_error * (self.shear[2] / determinant).abs(),
             barycentric: [u / determinant, v / determinant, w / determinant],
         }
     }
@@ -135,7 +155,7 @@ impl<'a> Nearest<'a> {
     pub(crate) fn consider(&mut self, id: u32, triangle: &[[f32; 3]; 3]) {
         if let Some(hit) = self.sheared.intersect(triangle) {
             let nearer = hit.t < self.best.t || (hit.t == self.best.t && id < self.best.primitive);
-            if nearer && hit.t > 0.0 && hit.t < self.ray.t_max {
+            if nearer && hit.is_within(self.ray.t_max) {
                 self.best = Hit { t: hit.t, primitive: id };
             }
         }
@@ -166,7 +186,7 @@ impl<'a> Canonical<'a> {
     #[inline(never)]
     pub(crate) fn hits(&mut self, triangle: &[[f32; 3]; 3]) -> bool {
         let sheared = self.sheared.get_or_insert_with(|| ShearedRay::new(self.ray));
-        sheared.intersect(triangle).is_some_and(|hit| hit.t > 0.0 && hit.t < self.ray.t_max)
+        sheared.intersect(triangle).is_some_and(|hit| hit.is_within(self.ray.t_max))
     }
 }
 
@@ -177,8 +197,8 @@ pub(crate) fn nearest(rays: &RayPacket, triangles: &Corners<3>) -> [f64; LANES] 
     let mut nearest = [f64::INFINITY; LANES];
     for (lane, nearest) in nearest.iter_mut().enumerate() {
         let ray = rays.ray(lane);
-        let t = ShearedRay::new(&ray).meet(&triangles.lane(lane)).t;
-        *nearest = if (t > 0.0) & (t < ray.t_max) { t } else { f64::INFINITY };
+        let hit = ShearedRay::new(&ray).meet(&triangles.lane(lane));
+        *nearest = if hit.is_within(ray.t_max) { hit.t } else { f64::INFINITY };
     }
     nearest
 }
