@@ -180,11 +180,16 @@ impl Geometry {
             let triangles = hits.map(|hit| hit.map_or(any, |hit| hit.primitive));
             return triangle::surfaces(rays, &meshes[index as usize].mesh, &triangles, surfaces);
         }
+        let of = |lane: usize, &world::Hit { t, primitive, .. }: &world::Hit| {
+            self.surface(&rays.ray(lane), &Hit { t, primitive }, meshes)
+        };
+        let mut found = hits.iter().enumerate().filter_map(|(lane, hit)| hit.map(|hit| (lane, hit)));
+        let Some((first, hit)) = found.next() else { return };
+        // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
+        let any = of(first, &hit);
         for (lane, hit) in hits.iter().enumerate() {
-            if let Some(hit) = hit {
-                let hit = Hit { t: hit.t, primitive: hit.primitive };
-                surfaces.put(lane, &self.surface(&rays.ray(lane), &hit, meshes));
-            }
+            let surface = hit.filter(|_| lane != first).map_or(any, |hit| of(lane, &hit));
+            surfaces.put(lane, &surface);
         }
     }
 }
