@@ -207,9 +207,14 @@ impl Intersections {
         self.hits[lane].map(|Hit { object, primitive, .. }| Face { object, primitive })
     }
 
-    /// The material of what a ray hits, and its colour there.
+    /// The material of what a ray hits.
+    pub(crate) fn material<'w>(&self, world: &'w World, lane: usize) -> Option<&'w Material> {
+        self.hits[lane].map(|hit| world.material(world.object(hit.object).material))
+    }
+
+    /// The same, and its colour there.
     pub(crate) fn look<'w>(&self, world: &'w World, lane: usize) -> Option<Look<'w>> {
-        let material = world.material(world.object(self.hits[lane]?.object).material);
+        let material = self.material(world, lane)?;
         let [u, v] = &self.surfaces.uv;
         let vertex_color: Rgb = packet::at(&self.surfaces.vertex_color, lane).to_array().into();
         let color = material.color.color_at(DVec2::new(u[lane], v[lane])) * vertex_color;

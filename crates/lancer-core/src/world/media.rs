@@ -163,20 +163,18 @@ impl World {
     /// Which of the rays that have met surfaces [`World::see`] has to look at: those that have met dielectrics, without
     /// those that touch nothing for sure, as almost all do.
     fn worth_seeing(&self, rays: &RayPacket, met: &Intersections) -> u32 {
+        let transmits = |lane: &usize| met.material(self, *lane).is_some_and(|it| !it.transmit.is_black());
+        let dielectric = bits(met.lanes()).filter(transmits).fold(0, |set, lane| set | 1_u32 << lane);
+        if dielectric.count_ones() < TOGETHER {
+            return dielectric;
+        }
         let mut segments = RayPacket::default();
         let mut own = [ObjectId(0); LANES];
-        let mut dielectric = 0;
-        for lane in bits(met.lanes()) {
-            if let Some(at) = met.at(self, lane)
-                && !self.material(at.material).transmit.is_black()
-            {
+        for lane in bits(dielectric) {
+            if let Some(at) = met.at(self, lane) {
                 segments.set(lane, &across(&at, rays.ray(lane).direction));
                 own[lane] = at.object;
-                dielectric |= 1 << lane;
             }
-        }
-        if u32::count_ones(dielectric) < TOGETHER {
-            return dielectric;
         }
         self.may_meet_others(&segments, dielectric, &own)
     }
