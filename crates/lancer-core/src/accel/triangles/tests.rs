@@ -229,12 +229,10 @@ fn most_rays_are_settled_without_the_canonical_test() {
         dispatch!(tree.level, simd => {
             let block_ray = block::TestRays::new(simd, &narrow);
             walk(simd, &tree.nodes, &narrow, &Uncounted, &mut |leaf: Child| {
-                let mut left = leaf.count();
-                for block in &tree.blocks[leaf.first()..leaf.first() + left.div_ceil(BLOCK)] {
-                    let verdict = block.test(simd, &block_ray, left.min(BLOCK), narrow.end);
-                    tested += left.min(BLOCK);
+                for (block, count) in block::blocks_of(leaf) {
+                    let verdict = tree.blocks[block].test(simd, &block_ray, count, narrow.end);
+                    tested += count;
                     unsure += (verdict.maybe & !verdict.sure).count_ones();
-                    left = left.saturating_sub(BLOCK);
                 }
                 narrow.end
             });
