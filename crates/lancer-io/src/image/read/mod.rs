@@ -14,7 +14,6 @@ use crate::diagnostics::{Diagnostic, LoadError};
 use crate::limits::Limits;
 use crate::resolver::Resolver;
 use ::image::codecs::jpeg::JpegDecoder;
-use ::image::codecs::webp::WebPDecoder;
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use lancer_core::color::linear_to_srgb;
 use lancer_core::film::Image;
@@ -126,10 +125,10 @@ fn provenance_in(bytes: &[u8]) -> Option<String> {
     }
     match ::image::guess_format(bytes).ok()? {
         ImageFormat::Png => of_png(bytes),
-        ImageFormat::Jpeg => of_exif(JpegDecoder::new(Cursor::new(bytes)).ok()?),
-        ImageFormat::WebP => of_exif(WebPDecoder::new(Cursor::new(bytes)).ok()?),
+        ImageFormat::Jpeg => of_exif(&JpegDecoder::new(Cursor::new(bytes)).ok()?.exif_metadata().ok()??),
+        ImageFormat::WebP => of_webp(bytes),
         // Exif has the form of a TIFF.
-        ImageFormat::Tiff => exif::read_text(bytes, exif::IMAGE_DESCRIPTION),
+        ImageFormat::Tiff => of_exif(bytes),
         ImageFormat::Hdr => of_hdr(bytes),
         _ => None,
     }
@@ -139,8 +138,15 @@ fn is_exr(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])
 }
 
-fn of_exif(mut decoder: impl ImageDecoder) -> Option<String> {
-    exif::read_text(&decoder.exif_metadata().ok()??, exif::IMAGE_DESCRIPTION)
+fn of_exif(exif: &[u8]) -> Option<String> {
+    exif::read_text(exif, exif::IMAGE_DESCRIPTION)
+}
+
+fn of_webp(bytes: &[u8]) -> Option<String> {
+    let mut decoder = image_webp::WebPDecoder::new(Cursor::new(bytes)).ok()?;
+    // It believes a chunk's own word for its length, of up to 4 GB.
+    decoder.set_memory_limit(bytes.len());
+    of_exif(&decoder.exif_metadata().ok()??)
 }
 
 fn values_of(decoded: DynamicImage) -> Picture {
