@@ -31,6 +31,7 @@ pub fn leave_surface(point: DVec3, point_error: DVec3, geometric_normal: DVec3, 
 }
 
 /// The ray from a surface in `direction`; see [`leave_surface`].
+#[inline(always)]
 pub fn ray_from_surface(point: DVec3, point_error: DVec3, geometric_normal: DVec3, direction: DVec3) -> Ray {
     Ray::new(leave_surface(point, point_error, geometric_normal, direction), direction)
 }

@@ -4,6 +4,7 @@
 //! every ray on the way. It knows neither threads, tiles nor nodes.
 
 mod ambient_occlusion;
+mod bends;
 mod camera_rays;
 mod lighting;
 mod listener;

@@ -6,16 +6,17 @@
 //!
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
+use super::bends::{Bends, Indices};
 use super::lighting::Lighting;
 use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::cancel::CancelToken;
 use crate::color::Rgb;
-use crate::geometry::{DVec3, Ray, RayPacket};
+use crate::geometry::{Ray, RayPacket};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
-use crate::shade::{AmbientTerm, LightTerm, ShadingPoint, fresnel_reflectance, reflect, refract};
-use crate::world::{Face, Hit, Intersection, Intersections, Look, Media, Touching, World};
+use crate::shade::{AmbientTerm, LightTerm, ShadingPoint};
+use crate::world::{Face, Hit, Interface, Intersection, Intersections, Look, Media, Touching, World};
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -37,6 +38,7 @@ pub struct Scratch {
     pending: [VecDeque<PendingRay>; LANES],
     met: Intersections,
     lighting: Lighting,
+    bends: Bends,
 }
 
 const LANES: usize = RayPacket::LANES;
@@ -144,9 +146,10 @@ impl<'w> Whitted<'w> {
         tally: &T,
         sums: &mut [Rgb; LANES],
     ) {
-        let Scratch { pending, met, lighting } = scratch;
+        let Scratch { pending, met, lighting, bends } = scratch;
+        let next_id = [1; LANES];
         let mut walk =
-            Walk { integrator: self, pending, met, lighting, counts, listeners, tally, next_id: [1; LANES] };
+            Walk { integrator: self, pending, met, lighting, bends, counts, listeners, tally, next_id };
         let mut radiances = [Rgb::BLACK; LANES];
         walk.run(rays, media, &mut radiances);
         for (sum, radiance) in sums.iter_mut().zip(radiances) {
@@ -166,7 +169,7 @@ impl<'w> Whitted<'w> {
         counts.primary += rays.count() as u64;
         let hits = self.intersect(rays.packet(), rays.lanes(), &Uncounted);
         let mut met = Intersections::default();
-        self.world.seen(rays.packet(), &hits, &mut met, &Uncounted);
+        self.world.seen(rays.packet(), &hits, false, &mut met, &Uncounted);
         let mut occlusions = [1.0; LANES];
         for (lane, occlusion) in occlusions.iter_mut().enumerate() {
             if let Some(at) = met.at(self.world, lane) {
@@ -232,6 +235,7 @@ struct Walk<'a, 'w, L, T> {
     pending: &'a mut [VecDeque<PendingRay>; LANES],
     met: &'a mut Intersections,
     lighting: &'a mut Lighting,
+    bends: &'a mut Bends,
     counts: &'a mut RayCounts,
     listeners: &'a mut [L],
     tally: &'a T,
@@ -239,18 +243,23 @@ struct Walk<'a, 'w, L, T> {
     next_id: [u32; LANES],
 }
 
-/// A surface that a ray has met, and from which it may go on.
+/// A ray that goes on from where it met a surface.
 struct Arrival<'a> {
     /// Which camera ray it comes from.
     lane: usize,
     id: RayId,
     path: &'a Path,
     key: Key,
+    interface: Interface,
+}
+
+/// A ray that continues another.
+struct Continuation {
+    kind: RayKind,
+    branch: Branch,
+    coefficient: Rgb,
     ray: Ray,
-    at: &'a Intersection,
-    /// Other dielectrics whose surfaces coincide with this one.
-    touching: &'a [Touching],
-    material: &'a Material,
+    media: Media,
 }
 
 impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
@@ -259,7 +268,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             kind: RayKind::Primary,
             throughput: Rgb::WHITE,
             depth: self.integrator.depth,
-            media: media.clone(),
+            media: *media,
         };
         self.step(RayId(0), first.packet(), first.lanes(), &[camera; LANES], first.keys(), radiances);
         if self.pending.iter().all(VecDeque::is_empty) {
@@ -338,18 +347,19 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;
-        let touching = world.seen(rays, hits, self.met, self.tally);
+        let touching = world.seen(rays, hits, L::HEARS, self.met, self.tally);
         let mut looks = [None; LANES];
         for (lane, look) in looks.iter_mut().enumerate() {
             *look = self.met.look(world, lane);
         }
         self.find_lighting(rays, &looks);
+        let mut going_on = 0;
         for (lane, look) in looks.into_iter().enumerate() {
             let Some(Look { material, color }) = look else { continue };
             let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
-            let goes_on = path.depth > 0 && self.integrator.goes_on(material);
+            going_on |= u32::from(path.depth > 0 && self.integrator.goes_on(material)) << lane;
             // Light alone needs no more of the surface than has been looked at.
-            let wanted = L::HEARS || goes_on || self.integrator.occlusion.is_wanted();
+            let wanted = L::HEARS || self.integrator.occlusion.is_wanted();
             let at = wanted.then(|| self.met.at(world, lane)).flatten();
             let listener = &mut self.listeners[lane];
             listener.begin_ray(id, path.kind, path.throughput, &ray);
@@ -364,11 +374,9 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             let ambient = self.ambient(lane, at.as_ref(), key, material.ambient, color);
             let radiance = ambient + self.lights(lane, point.as_ref());
             radiances[lane] += radiance * path.throughput;
-            if let Some(at) = at.as_ref().filter(|_| goes_on) {
-                let touching = touching.iter().find(|(other, _)| *other == lane);
-                let touching = touching.map_or(&[][..], |(_, touching)| touching);
-                self.continue_paths(&Arrival { lane, id, path, key, ray, at, touching, material });
-            }
+        }
+        if going_on != 0 {
+            self.continue_paths(id, rays, going_on, &touching, paths, keys);
         }
     }
 
@@ -421,43 +429,58 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         sum
     }
 
-    /// Queues L_r and L_t where they are wanted and their coefficients are not zero.
-    fn continue_paths(&mut self, arrival: &Arrival) {
-        let material = arrival.material;
-        let wants_reflection = self.integrator.wants_reflection(material);
-        let wants_refraction = self.integrator.wants_refraction(material);
-        let bend = Bend::new(self.integrator.world, arrival);
-        let (reflect, transmit) = bend.weights(material);
-        let mirrored = mirror_direction(arrival.at, arrival.ray.direction);
-        if wants_reflection && !reflect.is_black() {
-            let media = arrival.path.media.clone();
-            self.spawn(arrival, &bend, Branch::Reflection, RayKind::Reflection, reflect, mirrored, media);
+    /// Queues L_r and L_t of the rays `going_on` where they are wanted and their coefficients are not zero.
+    fn continue_paths(
+        &mut self,
+        id: RayId,
+        rays: &RayPacket,
+        going_on: u32,
+        touching: &[(usize, Vec<Touching>)],
+        paths: &[&Path; LANES],
+        keys: &[Key; LANES],
+    ) {
+        let world = self.integrator.world;
+        let mut interfaces = [Interface::default(); LANES];
+        let mut ior = Indices { before: [1.0; LANES], after: [1.0; LANES] };
+        for lane in bits(going_on) {
+            let touching = touching.iter().find(|(other, _)| *other == lane);
+            let touching = touching.map_or(&[][..], |(_, touching)| touching);
+            interfaces[lane] = self.met.interface(world, lane, &paths[lane].media, touching);
+            (ior.before[lane], ior.after[lane]) = (interfaces[lane].ior_before, interfaces[lane].ior_after);
         }
-        if wants_refraction && !transmit.is_black() {
-            let (kind, direction, media) = match bend.refracted {
-                Some(direction) => (RayKind::Refraction, direction, bend.media_after.clone()),
-                None => (RayKind::TotalInternalReflection, mirrored, arrival.path.media.clone()),
-            };
-            self.spawn(arrival, &bend, Branch::Transmission, kind, transmit, direction, media);
+        self.bends.mirror(world.level(), rays, self.met);
+        let is_asked = |material: &Material| material.fresnel || self.integrator.wants_refraction(material);
+        if bits(going_on).any(|lane| self.met.material(world, lane).is_some_and(is_asked)) {
+            self.bends.refract(world.level(), rays, self.met, &ior);
+        }
+        for lane in bits(going_on) {
+            let Some(material) = self.met.material(world, lane) else { continue };
+            let (path, interface) = (paths[lane], interfaces[lane]);
+            let arrival = Arrival { lane, id, path, key: keys[lane], interface };
+            let (reflect, transmit) = weights(material, self.bends.reflectance(lane));
+            if self.integrator.wants_reflection(material) && !reflect.is_black() {
+                let (kind, branch) = (RayKind::Reflection, Branch::Reflection);
+                let (ray, media) = (self.bends.mirrored(lane), path.media);
+                self.spawn(&arrival, &Continuation { kind, branch, coefficient: reflect, ray, media });
+            }
+            if self.integrator.wants_refraction(material) && !transmit.is_black() {
+                let (kind, ray, media) = match self.bends.refracted(lane) {
+                    Some(ray) => (RayKind::Refraction, ray, interface.media_after),
+                    None => (RayKind::TotalInternalReflection, self.bends.mirrored(lane), path.media),
+                };
+                let branch = Branch::Transmission;
+                self.spawn(&arrival, &Continuation { kind, branch, coefficient: transmit, ray, media });
+            }
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "each is one property of the new ray, used once")]
-    fn spawn(
-        &mut self,
-        arrival: &Arrival,
-        bend: &Bend,
-        branch: Branch,
-        kind: RayKind,
-        coefficient: Rgb,
-        direction: DVec3,
-        media: Media,
-    ) {
-        let throughput = arrival.path.throughput * coefficient;
+    fn spawn(&mut self, arrival: &Arrival, continuation: &Continuation) {
+        let &Arrival { lane, id, path, key, interface } = arrival;
+        let &Continuation { kind, branch, coefficient, ray, media } = continuation;
+        let throughput = path.throughput * coefficient;
         if throughput.max_channel() < LEAST_THROUGHPUT {
             return;
         }
-        let lane = arrival.lane;
         let next_id = &mut self.next_id[lane];
         if *next_id >= Whitted::MAX_RAYS {
             // Counted once for each camera ray.
@@ -465,83 +488,25 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             *next_id = Whitted::MAX_RAYS + 1;
             return;
         }
-        let ray = arrival.at.spawn(direction);
         self.listeners[lane].spawn(&SpawnEvent {
-            parent: arrival.id,
+            parent: id,
             child: RayId(*next_id),
             kind,
             coefficient,
-            ior_before: bend.ior_before,
-            ior_after: bend.ior_after,
+            ior_before: interface.ior_before,
+            ior_after: interface.ior_after,
             ray: &ray,
         });
         *next_id += 1;
-        let path = Path { kind, throughput, depth: arrival.path.depth - 1, media };
-        self.pending[lane].push_back(PendingRay { ray, path, key: arrival.key.child(branch) });
+        let path = Path { kind, throughput, depth: path.depth - 1, media };
+        self.pending[lane].push_back(PendingRay { ray, path, key: key.child(branch) });
     }
 }
 
-/// What a surface does to a ray that passes it.
-struct Bend {
-    ior_before: f64,
-    ior_after: f64,
-    media_after: Media,
-    /// None at total internal reflection.
-    refracted: Option<DVec3>,
-    cosine: f64,
-}
-
-impl Bend {
-    fn new(world: &World, arrival: &Arrival) -> Self {
-        let (at, media) = (arrival.at, &arrival.path.media);
-        let direction = arrival.ray.direction;
-        let cosine = -direction.dot(at.facing_normal());
-        if arrival.material.transmit.is_black() {
-            let (ior_before, ior_after) = (media.ior(world), arrival.material.ior);
-            return Self { ior_before, ior_after, media_after: media.clone(), refracted: None, cosine };
-        }
-        let interface = media.interface(world, at, arrival.touching);
-        let (ior_before, ior_after) = (interface.ior_before, interface.ior_after);
-        Self {
-            ior_before,
-            ior_after,
-            media_after: interface.media_after,
-            refracted: refracted_direction(at, direction, ior_before, ior_after),
-            cosine,
-        }
+/// k_r and k_t, weighted by the Fresnel reflectance where the material asks for it.
+fn weights(material: &Material, reflectance: f64) -> (Rgb, Rgb) {
+    if !material.fresnel {
+        return (material.reflect, material.transmit);
     }
-
-    /// k_r and k_t, weighted by the Fresnel reflectance where the material asks for it.
-    fn weights(&self, material: &Material) -> (Rgb, Rgb) {
-        if !material.fresnel {
-            return (material.reflect, material.transmit);
-        }
-        let reflectance = fresnel_reflectance(self.cosine, self.ior_before, self.ior_after);
-        (material.reflect * reflectance, material.transmit * (1.0 - reflectance))
-    }
-}
-
-/// The mirror direction about N. Where an interpolated N would send the ray into the surface, the geometric
-/// normal takes its place.
-fn mirror_direction(at: &Intersection, direction: DVec3) -> DVec3 {
-    let mirrored = reflect(direction, at.facing_normal());
-    let facing = at.facing_geometric_normal();
-    if mirrored.dot(facing) > 0.0 { mirrored } else { reflect(direction, facing) }
-}
-
-/// The refracted direction about N. Where an interpolated N would send the ray back out, the geometric normal
-/// takes its place.
-fn refracted_direction(
-    at: &Intersection,
-    direction: DVec3,
-    ior_before: f64,
-    ior_after: f64,
-) -> Option<DVec3> {
-    let facing = at.facing_geometric_normal();
-    let refracted = refract(direction, at.facing_normal(), ior_before, ior_after)?;
-    if refracted.dot(facing) < 0.0 {
-        Some(refracted)
-    } else {
-        refract(direction, facing, ior_before, ior_after)
-    }
+    (material.reflect * reflectance, material.transmit * (1.0 - reflectance))
 }

@@ -43,6 +43,11 @@ impl From<Arc<ImageTexture>> for Texture {
 }
 
 impl Texture {
+    /// Whether its colour depends on the texture coordinates.
+    pub(crate) fn wants_uv(&self) -> bool {
+        !matches!(self, Self::Solid(_))
+    }
+
     /// The colour at texture coordinates `uv`.
     pub fn color_at(&self, uv: DVec2) -> Rgb {
         match self {

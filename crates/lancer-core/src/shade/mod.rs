@@ -18,6 +18,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use dielectric::refracted;
 pub use dielectric::{fresnel_reflectance, reflect, refract};
 pub use terms::{AmbientTerm, LightTerm, specular_normalization};
 pub(crate) use terms::{Incidence, diffuse, specular};

@@ -31,7 +31,13 @@ pub fn occluded(ray: &Ray) -> bool {
 
 /// The surface at a hit; u = x and v = -z, so that seen from above with +x to the right, v runs upward.
 pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
-    let on_ray = ray.at(hit.t);
+    surface_at(ray, hit.t)
+}
+
+/// The same, without branches.
+#[inline(always)]
+pub(crate) fn surface_at(ray: &Ray, t: f64) -> SurfacePoint {
+    let on_ray = ray.at(t);
     SurfacePoint {
         point: DVec3::new(on_ray.x, 0.0, on_ray.z),
         point_error: DVec3::ZERO,

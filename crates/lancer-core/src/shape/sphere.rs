@@ -36,14 +36,25 @@ pub fn occluded(ray: &Ray) -> bool {
 
 /// The surface at a hit. u turns about y from +z toward +x, v rises from the south pole to the north pole.
 pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
-    let point = ray.at(hit.t).normalize();
-    let v = 1.0 - portable::acos(point.y) / PI;
+    let surface = plain_surface(ray, hit.t);
+    SurfacePoint { uv: uv(surface.point), ..surface }
+}
+
+/// The same without its texture coordinates, which cost more than the rest, and without branches.
+#[inline(always)]
+pub(crate) fn plain_surface(ray: &Ray, t: f64) -> SurfacePoint {
+    let point = ray.at(t).normalize();
     SurfacePoint {
         point,
         point_error: DVec3::splat(gamma(ON_UNIT_BALL)),
         geometric_normal: point,
         shading_normal: point,
-        uv: DVec2::new(turn_about_y(point.x, point.z), v),
+        uv: DVec2::ZERO,
         vertex_color: Rgb::WHITE,
     }
+}
+
+/// The texture coordinates of a point on the sphere.
+pub(crate) fn uv(point: DVec3) -> DVec2 {
+    DVec2::new(turn_about_y(point.x, point.z), 1.0 - portable::acos(point.y) / PI)
 }

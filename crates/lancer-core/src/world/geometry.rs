@@ -3,12 +3,14 @@
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, KdTree, Primitives, Tally};
 use crate::geometry::error::gamma;
-use crate::geometry::{Bounds, DVec3, Ray, RayPacket};
+use crate::geometry::{Bounds, DVec3, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
 use crate::shape::triangle::{Canonical, Nearest};
 use crate::shape::{Hit, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
 use crate::world;
 use std::sync::Arc;
+
+const LANES: usize = RayPacket::LANES;
 
 /// A canonical shape, or a mesh by its place in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,13 +168,14 @@ impl PreparedMesh {
 
 impl Geometry {
     /// The surfaces at hits of a packet, by lane: each as [`Geometry::surface`] finds it, and where there is no hit,
-    /// nothing of use.
+    /// nothing of use. Texture coordinates that cost much are left out unless `with_uv`.
     #[inline(always)]
     pub(super) fn surfaces(
         self,
         rays: &RayPacket,
-        hits: &[Option<world::Hit>; RayPacket::LANES],
+        hits: &[Option<world::Hit>; LANES],
         meshes: &[Arc<PreparedMesh>],
+        with_uv: bool,
         surfaces: &mut SurfacePoints,
     ) {
         if let Self::Mesh(index) = self {
@@ -180,17 +183,44 @@ impl Geometry {
             let triangles = hits.map(|hit| hit.map_or(any, |hit| hit.primitive));
             return triangle::surfaces(rays, &meshes[index as usize].mesh, &triangles, surfaces);
         }
-        let of = |lane: usize, &world::Hit { t, primitive, .. }: &world::Hit| {
-            self.surface(&rays.ray(lane), &Hit { t, primitive }, meshes)
-        };
         let mut found = hits.iter().enumerate().filter_map(|(lane, hit)| hit.map(|hit| (lane, hit)));
-        let Some((first, hit)) = found.next() else { return };
+        let Some((first, any)) = found.next() else { return };
         // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
-        let any = of(first, &hit);
-        for (lane, hit) in hits.iter().enumerate() {
-            let surface = hit.filter(|_| lane != first).map_or(any, |hit| of(lane, &hit));
-            surfaces.put(lane, &surface);
+        match self {
+            Self::Sphere => {
+                on_one_face(rays, &hits.map(|hit| hit.unwrap_or(any).t), sphere::plain_surface, surfaces);
+                for lane in (0..LANES).filter(|&lane| with_uv && hits[lane].is_some()) {
+                    let uv = sphere::uv(packet::at(&surfaces.point, lane));
+                    (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
+                }
+            }
+            Self::Plane => {
+                on_one_face(rays, &hits.map(|hit| hit.unwrap_or(any).t), plane::surface_at, surfaces);
+            }
+            Self::Cube | Self::Cylinder { .. } | Self::Mesh(_) => {
+                let of = |lane: usize, &world::Hit { t, primitive, .. }: &world::Hit| {
+                    self.surface(&rays.ray(lane), &Hit { t, primitive }, meshes)
+                };
+                let any = of(first, &any);
+                for (lane, hit) in hits.iter().enumerate() {
+                    let surface = hit.filter(|_| lane != first).map_or(any, |hit| of(lane, &hit));
+                    surfaces.put(lane, &surface);
+                }
+            }
         }
+    }
+}
+
+/// The surfaces that `of_shape` finds on rays: the scalar function, of which the compiler makes vector code.
+#[inline(always)]
+fn on_one_face(
+    rays: &RayPacket,
+    t: &[f64; LANES],
+    of_shape: impl Fn(&Ray, f64) -> SurfacePoint,
+    surfaces: &mut SurfacePoints,
+) {
+    for (lane, &t) in t.iter().enumerate() {
+        surfaces.put(lane, &of_shape(&rays.ray(lane), t));
     }
 }
 

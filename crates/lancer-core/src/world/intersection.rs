@@ -1,10 +1,10 @@
 //! A hit with everything that shading wants to know of it.
 
-use super::{Hit, Object, ObjectId, World};
+use super::{Hit, Interface, Media, Object, ObjectId, Touching, World};
 use crate::accel::bits;
 use crate::color::Rgb;
 use crate::geometry::error::{ray_from_surface, segment_from_surface, stands_off};
-use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket, packet};
+use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket, Vectors, packet};
 use crate::scene::{Material, MaterialId};
 use crate::shape::{self, SurfacePoint, SurfacePoints};
 use fearless_simd::dispatch;
@@ -87,6 +87,7 @@ impl Intersection {
     }
 
     /// The ray that leaves this surface in `direction`, to whichever side that is.
+    #[inline]
     pub fn spawn(&self, direction: DVec3) -> Ray {
         ray_from_surface(self.point, self.point_error, self.geometric_normal, direction)
     }
@@ -128,8 +129,15 @@ pub(crate) struct Intersections {
 
 impl Intersections {
     /// Finds the surfaces at hits of a packet, each as [`World::intersection`] finds it, in place of those that were
-    /// there: they are too large to be handed on.
-    pub(crate) fn find(&mut self, world: &World, rays: &RayPacket, hits: &[Option<Hit>; LANES]) {
+    /// there: they are too large to be handed on. Unless `with_uv`, texture coordinates may be left out where there is no
+    /// texture.
+    pub(crate) fn find(
+        &mut self,
+        world: &World,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
+        with_uv: bool,
+    ) {
         self.hits = *hits;
         let mut found = 0;
         for (lane, hit) in hits.iter().enumerate() {
@@ -144,10 +152,10 @@ impl Intersections {
                     }
                 }
             } else if found == 0 {
-                self.find_on(world, object, rays, &alike);
+                self.find_on(world, object, rays, &alike, with_uv);
             } else {
                 let mut others = Self::default();
-                others.find_on(world, object, rays, &alike);
+                others.find_on(world, object, rays, &alike, with_uv);
                 for lane in bits(lanes) {
                     self.surfaces.put(lane, &others.surfaces.at(lane));
                     self.from_inside[lane] = others.from_inside[lane];
@@ -158,13 +166,21 @@ impl Intersections {
     }
 
     /// The surfaces at hits with one object.
-    fn find_on(&mut self, world: &World, object: &Object, rays: &RayPacket, hits: &[Option<Hit>; LANES]) {
+    fn find_on(
+        &mut self,
+        world: &World,
+        object: &Object,
+        rays: &RayPacket,
+        hits: &[Option<Hit>; LANES],
+        with_uv: bool,
+    ) {
         let Self { surfaces, from_inside, .. } = self;
+        let with_uv = with_uv || world.material(object.material).color.wants_uv();
         let mut local = RayPacket::default();
         dispatch!(world.level, _simd => {
             object.placement.rays_to_object(rays, &mut local);
             let rays = &local;
-            object.geometry.surfaces(rays, hits, &world.meshes, surfaces);
+            object.geometry.surfaces(rays, hits, &world.meshes, with_uv, surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {
                 let surface = surfaces.at(lane);
                 *from_inside = is_from_inside(&surface, &rays.ray(lane));
@@ -195,11 +211,29 @@ impl Intersections {
     }
 
     /// What a ray hits.
+    #[inline]
     pub(crate) fn at(&self, world: &World, lane: usize) -> Option<Intersection> {
         self.hits[lane].as_ref().map(|hit| {
             let object = world.object(hit.object);
             Intersection::at(object, hit, &self.surfaces.at(lane), self.from_inside[lane])
         })
+    }
+
+    /// What happens to a ray that arrives through `media` at what it hits, which touches others. Opaque surfaces are
+    /// taken for those of a medium that is not entered.
+    pub(crate) fn interface(
+        &self,
+        world: &World,
+        lane: usize,
+        media: &Media,
+        touching: &[Touching],
+    ) -> Interface {
+        let Some(hit) = self.hits[lane] else { return Interface::default() };
+        let material = world.material(world.object(hit.object).material);
+        if material.transmit.is_black() {
+            return Interface { ior_before: media.ior(world), ior_after: material.ior, media_after: *media };
+        }
+        media.interface(world, hit.object, self.from_inside[lane], touching)
     }
 
     /// The face that a ray hits.
@@ -213,12 +247,28 @@ impl Intersections {
     }
 
     /// The same, and its colour there.
+    #[inline]
     pub(crate) fn look<'w>(&self, world: &'w World, lane: usize) -> Option<Look<'w>> {
         let material = self.material(world, lane)?;
         let [u, v] = &self.surfaces.uv;
         let vertex_color: Rgb = packet::at(&self.surfaces.vertex_color, lane).to_array().into();
         let color = material.color.color_at(DVec2::new(u[lane], v[lane])) * vertex_color;
         Some(Look { material, color })
+    }
+
+    /// See [`Intersection::spawn`].
+    #[inline(always)]
+    pub(crate) fn spawn(&self, lane: usize, direction: DVec3) -> Ray {
+        let of = |vectors: &Vectors| packet::at(vectors, lane);
+        let SurfacePoints { point, point_error, geometric_normal, .. } = &self.surfaces;
+        ray_from_surface(of(point), of(point_error), of(geometric_normal), direction)
+    }
+
+    /// See [`Intersection::facing_geometric_normal`].
+    #[inline(always)]
+    pub(crate) fn facing_geometric_normal(&self, lane: usize) -> DVec3 {
+        let normal = packet::at(&self.surfaces.geometric_normal, lane);
+        if self.from_inside[lane] { -normal } else { normal }
     }
 
     /// N of the illumination model; see [`Intersection::facing_normal`].

@@ -6,17 +6,20 @@
 use super::{Hit, Intersection, Intersections, ObjectId, World};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::error::leave_surface;
-use crate::geometry::{DVec3, Ray, RayPacket};
-use arrayvec::ArrayVec;
+use crate::geometry::{DVec3, Ray, RayPacket, Vectors, packet};
+use crate::shape::SurfacePoints;
+use fearless_simd::dispatch;
 
 /// The transmissive objects around a point, the one entered last at the end.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Media {
-    objects: ArrayVec<ObjectId, { Self::MAX_NESTED }>,
+    /// The first `count`; the others are the default.
+    objects: [ObjectId; Self::MAX_NESTED],
+    count: usize,
 }
 
 /// What happens to a ray's media at an interface.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Interface {
     /// The index of refraction on the side that the ray comes from.
     pub(crate) ior_before: f64,
@@ -74,17 +77,24 @@ impl Media {
 
     /// The index of refraction of the innermost medium; 1 outside of everything.
     pub fn ior(&self, world: &World) -> f64 {
-        self.objects.last().map_or(1.0, |&object| world.material(world.object(object).material).ior)
+        self.objects().last().map_or(1.0, |&object| world.material(world.object(object).material).ior)
     }
 
-    /// What happens to a ray that arrives through these media at a transmissive surface, which touches others.
-    pub(crate) fn interface(&self, world: &World, at: &Intersection, touching: &[Touching]) -> Interface {
-        let mut before = self.clone();
-        if at.from_inside && !before.objects.contains(&at.object) {
-            before.enter(at.object);
+    /// What happens to a ray that arrives through these media at the surface of a transmissive object, which touches
+    /// others.
+    pub(crate) fn interface(
+        &self,
+        world: &World,
+        object: ObjectId,
+        from_inside: bool,
+        touching: &[Touching],
+    ) -> Interface {
+        let mut before = *self;
+        if from_inside {
+            before.enter(object);
         }
-        let mut after = before.clone();
-        after.cross(at.object, at.from_inside);
+        let mut after = before;
+        after.cross(object, from_inside);
         for other in touching.iter().filter(|other| other.is_transmissive) {
             after.cross(other.object, other.from_inside);
         }
@@ -93,15 +103,28 @@ impl Media {
 
     fn cross(&mut self, object: ObjectId, from_inside: bool) {
         if from_inside {
-            self.objects.retain(|other| *other != object);
+            self.leave(object);
         } else {
             self.enter(object);
         }
     }
 
+    fn objects(&self) -> &[ObjectId] {
+        &self.objects[..self.count]
+    }
+
     fn enter(&mut self, object: ObjectId) {
-        if !self.objects.contains(&object) && !self.objects.is_full() {
-            self.objects.push(object);
+        if !self.objects().contains(&object) && self.count < Self::MAX_NESTED {
+            self.objects[self.count] = object;
+            self.count += 1;
+        }
+    }
+
+    fn leave(&mut self, object: ObjectId) {
+        if let Some(place) = self.objects().iter().position(|&other| other == object) {
+            self.objects[place..self.count].rotate_left(1);
+            self.count -= 1;
+            self.objects[self.count] = ObjectId::default();
         }
     }
 }
@@ -139,15 +162,17 @@ impl World {
         }
     }
 
-    /// Finds the surfaces that count where rays of a packet hit, and the dielectrics that touch them, by ray, where any do.
+    /// Finds the surfaces that count where rays of a packet hit, as [`Intersections::find`] does, and the dielectrics that
+    /// touch them, by ray, where any do.
     pub(crate) fn seen(
         &self,
         rays: &RayPacket,
         hits: &[Option<Hit>; LANES],
+        with_uv: bool,
         met: &mut Intersections,
         tally: &impl Tally,
     ) -> Vec<(usize, Vec<Touching>)> {
-        met.find(self, rays, hits);
+        met.find(self, rays, hits, with_uv);
         let mut touching = Vec::new();
         for lane in bits(self.worth_seeing(rays, met)) {
             let Some(mut at) = met.at(self, lane) else { continue };
@@ -169,20 +194,22 @@ impl World {
             return dielectric;
         }
         let mut segments = RayPacket::default();
-        let mut own = [ObjectId(0); LANES];
-        for lane in bits(dielectric) {
-            if let Some(at) = met.at(self, lane) {
-                segments.set(lane, &across(&at, rays.ray(lane).direction));
-                own[lane] = at.object;
+        dispatch!(self.level, _simd => {
+            let SurfacePoints { point, point_error, geometric_normal, .. } = &met.surfaces;
+            for lane in 0..LANES {
+                let of = |vectors: &Vectors| packet::at(vectors, lane);
+                let segment = across(of(point), of(point_error), of(geometric_normal), of(&rays.direction));
+                segments.set(lane, &segment);
             }
-        }
+        });
+        let own = std::array::from_fn(|lane| met.face(lane).map_or(ObjectId(0), |face| face.object));
         self.may_meet_others(&segments, dielectric, &own)
     }
 
     /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in
     /// `direction` meets them. In the order of their objects' ids; almost always none.
     pub(crate) fn touching(&self, at: &Intersection, direction: DVec3, tally: &impl Tally) -> Vec<Touching> {
-        let segment = across(at, direction);
+        let segment = across(at.point, at.point_error, at.geometric_normal, direction);
         let mut touching: Vec<Touching> = Vec::new();
         self.visit_objects(&segment, tally, |id, object| {
             if id != at.object && touching.iter().all(|other| other.object != id) {
@@ -205,7 +232,8 @@ impl World {
 }
 
 /// From just before a surface to just after it, as a ray in `direction` crosses it.
-fn across(at: &Intersection, direction: DVec3) -> Ray {
-    let leave = |direction| leave_surface(at.point, at.point_error, at.geometric_normal, direction);
+#[inline(always)]
+fn across(point: DVec3, point_error: DVec3, geometric_normal: DVec3, direction: DVec3) -> Ray {
+    let leave = |direction| leave_surface(point, point_error, geometric_normal, direction);
     Ray::between(leave(-direction), leave(direction))
 }

@@ -31,7 +31,7 @@ pub use error::CompileError;
 pub use intersection::{Face, Intersection};
 pub(crate) use intersection::{Intersections, Look};
 pub use media::Media;
-pub(crate) use media::Touching;
+pub(crate) use media::{Interface, Touching};
 
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{NarrowRay, Narrowed, walk};
@@ -44,7 +44,7 @@ use geometry::{Geometry, PreparedMesh};
 use std::sync::Arc;
 
 /// Which object of a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ObjectId(u32);
 
 impl ObjectId {

@@ -110,7 +110,7 @@ impl World {
                 }
                 lanes
             }, t_max };
-            while let Some((group, backward)) = packet.octant(&mut open) {
+            while let Some((group, backward)) = packet.octant(simd, &mut open) {
                 let mut end = packet.ends_of(group);
                 walk_packet(simd, tree.nodes(), &packet, group, backward, &mut end, &mut visitor);
             }

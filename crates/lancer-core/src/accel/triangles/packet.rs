@@ -129,20 +129,17 @@ impl NarrowPacket {
 
     /// Takes from `open` a group of rays whose directions have the same signs: which, and which axes they go down.
     #[inline(always)]
-    pub(crate) fn octant(&self, open: &mut u32) -> Option<(u32, [bool; 3])> {
+    pub(crate) fn octant<S: Simd>(&self, simd: S, open: &mut u32) -> Option<(u32, [bool; 3])> {
         if *open == 0 {
             return None;
         }
-        let first = open.trailing_zeros() as usize;
+        let first = open.trailing_zeros();
         let mut group = *open;
         let mut backward = [false; 3];
         for (backward, inverse) in backward.iter_mut().zip(&self.inverse) {
-            *backward = inverse[first] < 0.0;
-            let mut alike = 0;
-            for (lane, inverse) in inverse.iter().enumerate() {
-                alike |= u32::from((*inverse < 0.0) == *backward) << lane;
-            }
-            group &= alike;
+            let down = f32x16::load_array_ref(simd, inverse).simd_lt(f32x16::splat(simd, 0.0)).to_bitmask();
+            *backward = down >> first & 1 == 1;
+            group &= if *backward { down as u32 } else { !down as u32 };
         }
         *open &= !group;
         Some((group, backward))
@@ -416,7 +413,7 @@ pub(super) fn intersect<S: Simd>(
     let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
     let mut ends = packet.end;
     let mut searched = 0;
-    while let Some((group, backward)) = packet.octant(&mut open) {
+    while let Some((group, backward)) = packet.octant(simd, &mut open) {
         if group.count_ones() <= ALONE {
             left_over |= group;
             continue;
@@ -567,7 +564,7 @@ pub(super) fn occluded<S: Simd>(
     let ReadyRays { rays, narrow: packet } = rays;
     let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
     let mut search = OcclusionSearch { simd, tree, packet, rays, own, occluded: 0 };
-    while let Some((group, backward)) = packet.octant(&mut open) {
+    while let Some((group, backward)) = packet.octant(simd, &mut open) {
         if group.count_ones() <= ALONE {
             left_over |= group;
             continue;

@@ -43,7 +43,10 @@ fn crowd(seed: u32) -> Scene {
     let mut scene = Scene::new("crowd");
     let shared = Arc::new(soup(seed, 60));
     scene.add(Node::shape("floor", Shape::Plane));
-    for _ in 0..60 {
+    let (even, odd) = (Rgb::BLACK, Rgb::WHITE);
+    let chequered = Material { color: Texture::Checker { even, odd, size: 1.0 }, ..Material::default() };
+    let materials = [Material::default(), chequered].map(|material| scene.add_material(material));
+    for i in 0..60 {
         let shape = match random.below(5) {
             0 => Shape::Sphere,
             1 => Shape::Cube,
@@ -53,7 +56,8 @@ fn crowd(seed: u32) -> Scene {
         };
         let distance = random.between(0.0, 2.0);
         let transform = random.transform(0.2, distance);
-        scene.add(Node::shape("one", shape).with_transform(transform));
+        let material = materials[i / 5 % 2];
+        scene.add(Node::shape("one", shape).with_transform(transform).with_material(material));
     }
     // Twins: which of two hits at the same t is seen must not depend on the accelerator.
     let twin = scene.nodes()[1].clone();
@@ -112,7 +116,7 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
         (0..vertices).map(|_| [random.between(-1.0, 2.0) as f32, random.between(0.0, 1.0) as f32]).collect();
     data.colors = (0..vertices).map(|_| [(); 3].map(|()| random.between(0.0, 1.0) as f32)).collect();
     let painted = Arc::new(Mesh::new(data).unwrap());
-    let mut together = 0;
+    let (mut together, mut textured) = (0, 0);
     let mut met = Intersections::default();
     for seed in 0..4 {
         let mut scene = crowd(seed);
@@ -131,11 +135,20 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
                     packet.set(lane, &Ray { direction, ..first });
                 }
                 let hits = world.intersect_packet(&packet, 0xfff7);
-                met.find(&world, &packet, &hits);
+                met.find(&world, &packet, &hits, true);
                 for (lane, hit) in hits.iter().enumerate() {
                     let ray = packet.ray(lane);
                     let alone = hit.map(|hit| world.intersection(&ray, &hit));
                     assert_eq!(met.at(&world, lane), alone, "{instructions:?} {ray:?}");
+                }
+                met.find(&world, &packet, &hits, false);
+                for (lane, hit) in hits.iter().enumerate() {
+                    let Some(hit) = hit else { continue };
+                    let (alone, at) =
+                        (world.intersection(&packet.ray(lane), hit), met.at(&world, lane).unwrap());
+                    textured += u32::from(world.material(at.material).color.wants_uv());
+                    let uv = if world.material(at.material).color.wants_uv() { at.uv } else { alone.uv };
+                    assert_eq!(Intersection { uv, ..at }, alone);
                 }
                 let alike =
                     |hit: &Hit| hits.iter().flatten().filter(|other| other.object == hit.object).count();
@@ -143,7 +156,7 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
             }
         }
     }
-    assert!(together > 1_000, "{together}");
+    assert!(together > 1_000 && textured > 1_000, "{together} {textured}");
 }
 
 /// Also towards points that hardly rise above the face, as far as they are said to rise clearly.
