@@ -81,7 +81,40 @@ impl SurfacePoints {
     }
 }
 
-/// The stretch of a line inside of a convex shape, with the faces at its ends.
+impl Hit {
+    /// None, where vector code wants something all the same.
+    const NONE: Self = Self { t: f64::INFINITY, primitive: 0 };
+
+    /// What a shape's `nearest` found.
+    pub(crate) fn found(self) -> Option<Self> {
+        (self.t != f64::INFINITY).then_some(self)
+    }
+}
+
+/// The hits of a packet with a shape, lane by lane as vector instructions want them; infinite where there is none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hits {
+    pub(crate) t: [f64; RayPacket::LANES],
+    pub(crate) primitive: [u32; RayPacket::LANES],
+}
+
+impl Hits {
+    pub(crate) const NONE: Self =
+        Self { t: [f64::INFINITY; RayPacket::LANES], primitive: [0; RayPacket::LANES] };
+
+    #[inline(always)]
+    pub(crate) fn at(&self, lane: usize) -> Hit {
+        Hit { t: self.t[lane], primitive: self.primitive[lane] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, lane: usize, hit: Hit) {
+        (self.t[lane], self.primitive[lane]) = (hit.t, hit.primitive);
+    }
+}
+
+/// The stretch of a line inside of a convex shape, with the faces at its ends; empty where it ends before it begins.
+/// Without branches, so that vector code can be made of it.
 #[derive(Clone, Copy, Debug)]
 struct Chord {
     enter: Hit,
@@ -90,43 +123,45 @@ struct Chord {
 
 impl Chord {
     /// The whole line.
-    const LINE: Self = Self {
-        enter: Hit { t: f64::NEG_INFINITY, primitive: 0 },
-        exit: Hit { t: f64::INFINITY, primitive: 0 },
-    };
+    const LINE: Self = Self::new([f64::NEG_INFINITY, f64::INFINITY], [0, 0]);
+
+    const EMPTY: Self = Self::new([f64::INFINITY, f64::NEG_INFINITY], [0, 0]);
+
+    #[inline(always)]
+    const fn new([enter, exit]: [f64; 2], [near, far]: [u32; 2]) -> Self {
+        Self { enter: Hit { t: enter, primitive: near }, exit: Hit { t: exit, primitive: far } }
+    }
 
     /// The part of the chord in another convex shape. Where faces meet, the earlier shape's is kept.
-    fn clip(self, other: Self) -> Option<Self> {
-        let enter = if other.enter.t > self.enter.t { other.enter } else { self.enter };
-        let exit = if other.exit.t < self.exit.t { other.exit } else { self.exit };
-        (enter.t <= exit.t).then_some(Self { enter, exit })
+    #[inline(always)]
+    fn clip(self, other: Self) -> Self {
+        Self {
+            enter: if other.enter.t > self.enter.t { other.enter } else { self.enter },
+            exit: if other.exit.t < self.exit.t { other.exit } else { self.exit },
+        }
     }
 
     /// The part of a line between the planes -1 and 1 of one coordinate, with the faces `low` and `high`.
     ///
     /// The signs of the two parameters are exact, since those of the differences are.
-    fn slab(origin: f64, direction: f64, low: u32, high: u32) -> Option<Self> {
-        if direction == 0.0 {
-            return (origin.abs() <= 1.0).then_some(Self::LINE);
-        }
-        let below = Hit { t: (-1.0 - origin) / direction, primitive: low };
-        let above = Hit { t: (1.0 - origin) / direction, primitive: high };
-        Some(if direction > 0.0 {
-            Self { enter: below, exit: above }
-        } else {
-            Self { enter: above, exit: below }
-        })
+    #[inline(always)]
+    fn slab(origin: f64, direction: f64, low: u32, high: u32) -> Self {
+        let (below, above) = ((-1.0 - origin) / direction, (1.0 - origin) / direction);
+        let forward = direction > 0.0;
+        let ends = if forward { [below, above] } else { [above, below] };
+        let faces = if forward { [low, high] } else { [high, low] };
+        let beside = if origin.abs() <= 1.0 { Self::LINE } else { Self::EMPTY };
+        if direction == 0.0 { beside } else { Self::new(ends, faces) }
     }
 
-    /// The first end in (0, `t_max`).
-    fn first_hit(self, t_max: f64) -> Option<Hit> {
-        [self.enter, self.exit].into_iter().find(|hit| hit.t > 0.0 && hit.t < t_max)
+    /// The first end in (0, `t_max`) that `counts`.
+    #[inline(always)]
+    fn first_hit(self, t_max: f64, counts: impl Fn(f64) -> bool) -> Hit {
+        let Self { enter, exit } = self;
+        let is_hit = |t: f64| (enter.t <= exit.t) & (t > 0.0) & (t < t_max) & counts(t);
+        let exit = if is_hit(exit.t) { exit } else { Hit::NONE };
+        if is_hit(enter.t) { enter } else { exit }
     }
-}
-
-/// A hit with the only face of a shape at the t that its `nearest` found.
-pub(crate) fn hit_at(t: f64) -> Option<Hit> {
-    (t != f64::INFINITY).then_some(Hit { t, primitive: 0 })
 }
 
 /// The stretch of the line `o + t d` inside of the unit circle or sphere, for vectors of either dimension given

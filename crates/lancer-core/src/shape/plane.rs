@@ -1,6 +1,6 @@
 //! y = 0, unbounded, with the normal +Y.
 
-use super::{Hit, SurfacePoint, hit_at};
+use super::{Hit, SurfacePoint};
 use crate::color::Rgb;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray};
 
@@ -13,15 +13,15 @@ pub fn bounds() -> Bounds {
 ///
 /// A ray along the plane does not meet it, even from within.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
-    hit_at(nearest(ray))
+    nearest(ray).found()
 }
 
-/// The t of that hit, infinite where there is none; without branches.
+/// That hit, infinite where there is none; without branches.
 #[inline(always)]
-pub(crate) fn nearest(ray: &Ray) -> f64 {
+pub(crate) fn nearest(ray: &Ray) -> Hit {
     let t = -ray.origin.y / ray.direction.y;
     let counts = (t > 0.0) & (t < ray.t_max);
-    if counts { t } else { f64::INFINITY }
+    if counts { Hit { t, primitive: 0 } } else { Hit::NONE }
 }
 
 /// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
@@ -31,19 +31,25 @@ pub fn occluded(ray: &Ray) -> bool {
 
 /// The surface at a hit; u = x and v = -z, so that seen from above with +x to the right, v runs upward.
 pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
-    surface_at(ray, hit.t)
+    let surface = plain_surface(ray, hit);
+    SurfacePoint { uv: uv(surface.point), ..surface }
 }
 
-/// The same, without branches.
+/// The same without its texture coordinates, and without branches.
 #[inline(always)]
-pub(crate) fn surface_at(ray: &Ray, t: f64) -> SurfacePoint {
-    let on_ray = ray.at(t);
+pub(crate) fn plain_surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
+    let on_ray = ray.at(hit.t);
     SurfacePoint {
         point: DVec3::new(on_ray.x, 0.0, on_ray.z),
         point_error: DVec3::ZERO,
         geometric_normal: DVec3::Y,
         shading_normal: DVec3::Y,
-        uv: DVec2::new(on_ray.x, -on_ray.z),
+        uv: DVec2::ZERO,
         vertex_color: Rgb::WHITE,
     }
+}
+
+/// The texture coordinates of a point on the plane.
+pub(crate) fn uv(point: DVec3) -> DVec2 {
+    DVec2::new(point.x, -point.z)
 }

@@ -1,6 +1,6 @@
 //! x^2 + y^2 + z^2 = 1.
 
-use super::{Hit, ON_UNIT_BALL, SurfacePoint, hit_at, turn_about_y, unit_ball_chord};
+use super::{Chord, Hit, ON_UNIT_BALL, SurfacePoint, turn_about_y, unit_ball_chord};
 use crate::color::Rgb;
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray, portable};
@@ -14,19 +14,17 @@ pub fn bounds() -> Bounds {
 /// The nearest hit with t in (0, `t_max`) of a ray in the sphere's space, from outside or from inside.
 /// `primitive` is 0.
 pub fn intersect(ray: &Ray) -> Option<Hit> {
-    hit_at(nearest(ray))
+    nearest(ray).found()
 }
 
-/// The t of that hit, infinite where there is none; without branches.
+/// That hit, infinite where there is none; without branches.
 #[inline(always)]
-pub(crate) fn nearest(ray: &Ray) -> f64 {
+pub(crate) fn nearest(ray: &Ray) -> Hit {
     let (o, d) = (ray.origin, ray.direction);
     let (oo, od, dd) = (o.dot(o), o.dot(d), d.dot(d));
-    let [enter, exit] = unit_ball_chord(oo, od, dd, (o - d * (od / dd)).length_squared());
+    let ends = unit_ball_chord(oo, od, dd, (o - d * (od / dd)).length_squared());
     let leads_away = (oo >= 1.0) & (od >= 0.0);
-    let counts = |t: f64| !leads_away & (t > 0.0) & (t < ray.t_max);
-    let exit = if counts(exit) { exit } else { f64::INFINITY };
-    if counts(enter) { enter } else { exit }
+    Chord::new(ends, [0, 0]).first_hit(ray.t_max, |_| !leads_away)
 }
 
 /// Whether the ray, in the shape's space, meets it at any t in (0, `t_max`).
@@ -36,14 +34,14 @@ pub fn occluded(ray: &Ray) -> bool {
 
 /// The surface at a hit. u turns about y from +z toward +x, v rises from the south pole to the north pole.
 pub fn surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
-    let surface = plain_surface(ray, hit.t);
+    let surface = plain_surface(ray, hit);
     SurfacePoint { uv: uv(surface.point), ..surface }
 }
 
 /// The same without its texture coordinates, which cost more than the rest, and without branches.
 #[inline(always)]
-pub(crate) fn plain_surface(ray: &Ray, t: f64) -> SurfacePoint {
-    let point = ray.at(t).normalize();
+pub(crate) fn plain_surface(ray: &Ray, hit: &Hit) -> SurfacePoint {
+    let point = ray.at(hit.t).normalize();
     SurfacePoint {
         point,
         point_error: DVec3::splat(gamma(ON_UNIT_BALL)),

@@ -6,7 +6,7 @@ use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec3, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
 use crate::shape::triangle::{Canonical, Nearest};
-use crate::shape::{Hit, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
+use crate::shape::{Hit, Hits, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
 use crate::world;
 use std::sync::Arc;
 
@@ -183,44 +183,45 @@ impl Geometry {
             let triangles = hits.map(|hit| hit.map_or(any, |hit| hit.primitive));
             return triangle::surfaces(rays, &meshes[index as usize].mesh, &triangles, surfaces);
         }
-        let mut found = hits.iter().enumerate().filter_map(|(lane, hit)| hit.map(|hit| (lane, hit)));
-        let Some((first, any)) = found.next() else { return };
         // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
+        let Some(any) = hits.iter().flatten().next() else { return };
+        let mut local_hits = Hits::NONE;
+        for (lane, hit) in hits.iter().enumerate() {
+            let world::Hit { t, primitive, .. } = hit.unwrap_or(*any);
+            local_hits.put(lane, Hit { t, primitive });
+        }
         match self {
-            Self::Sphere => {
-                on_one_face(rays, &hits.map(|hit| hit.unwrap_or(any).t), sphere::plain_surface, surfaces);
-                for lane in (0..LANES).filter(|&lane| with_uv && hits[lane].is_some()) {
-                    let uv = sphere::uv(packet::at(&surfaces.point, lane));
-                    (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
-                }
-            }
-            Self::Plane => {
-                on_one_face(rays, &hits.map(|hit| hit.unwrap_or(any).t), plane::surface_at, surfaces);
-            }
-            Self::Cube | Self::Cylinder { .. } | Self::Mesh(_) => {
-                let of = |lane: usize, &world::Hit { t, primitive, .. }: &world::Hit| {
-                    self.surface(&rays.ray(lane), &Hit { t, primitive }, meshes)
-                };
-                let any = of(first, &any);
-                for (lane, hit) in hits.iter().enumerate() {
-                    let surface = hit.filter(|_| lane != first).map_or(any, |hit| of(lane, &hit));
-                    surfaces.put(lane, &surface);
-                }
-            }
+            Self::Sphere => plain_surfaces(rays, &local_hits, sphere::plain_surface, surfaces),
+            Self::Cube => plain_surfaces(rays, &local_hits, cube::plain_surface, surfaces),
+            Self::Cylinder { .. } => plain_surfaces(rays, &local_hits, cylinder::plain_surface, surfaces),
+            Self::Plane => plain_surfaces(rays, &local_hits, plane::plain_surface, surfaces),
+            Self::Mesh(_) => {}
+        }
+        for lane in (0..LANES).filter(|&lane| with_uv && hits[lane].is_some()) {
+            let (point, face) = (packet::at(&surfaces.point, lane), local_hits.primitive[lane]);
+            let uv = match self {
+                Self::Sphere => sphere::uv(point),
+                Self::Cube => cube::uv(point, face),
+                Self::Cylinder { .. } => cylinder::uv(point, face),
+                Self::Plane => plane::uv(point),
+                Self::Mesh(_) => continue,
+            };
+            (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
         }
     }
 }
 
-/// The surfaces that `of_shape` finds on rays: the scalar function, of which the compiler makes vector code.
+/// The surfaces of a shape at hits, without texture coordinates: the scalar function, of which the compiler makes vector
+/// code.
 #[inline(always)]
-fn on_one_face(
+fn plain_surfaces(
     rays: &RayPacket,
-    t: &[f64; LANES],
-    of_shape: impl Fn(&Ray, f64) -> SurfacePoint,
+    hits: &Hits,
+    of_shape: impl Fn(&Ray, &Hit) -> SurfacePoint,
     surfaces: &mut SurfacePoints,
 ) {
-    for (lane, &t) in t.iter().enumerate() {
-        surfaces.put(lane, &of_shape(&rays.ray(lane), t));
+    for lane in 0..LANES {
+        surfaces.put(lane, &of_shape(&rays.ray(lane), &hits.at(lane)));
     }
 }
 

@@ -6,10 +6,13 @@ use crate::accel::bvh::Child;
 use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
 use crate::geometry::{Placement, Ray, RayPacket};
-use crate::shape::{self, plane, sphere};
+use crate::shape::{self, Hits, cube, cylinder, plane, sphere};
 use fearless_simd::{Level, dispatch};
 
 const LANES: usize = RayPacket::LANES;
+
+/// So many rays are held against a shape together; fewer one by one. Untuned.
+const TOGETHER: u32 = 3;
 
 impl World {
     /// The nearest hits of the rays `wanted` of a packet, a bit for each: what [`World::intersect`] finds, found
@@ -181,9 +184,11 @@ impl Object {
             return tree.intersect_packet(&local.ready, wanted);
         }
         let mut hits = [None; LANES];
-        if let Some(nearest) = self.nearest_on_one_face(world.level, rays, up_to) {
+        if wanted.count_ones() >= TOGETHER
+            && let Some(nearest) = self.nearest_on_shape(world.level, rays, up_to)
+        {
             for lane in bits(wanted) {
-                hits[lane] = shape::hit_at(nearest[lane]);
+                hits[lane] = nearest.at(lane).found();
             }
             return hits;
         }
@@ -207,8 +212,10 @@ impl Object {
             local.prepare(rays, &rays.t_max, self, world);
             return tree.occluded_packet(&local.ready, wanted, own);
         }
-        if let Some(nearest) = self.nearest_on_one_face(world.level, rays, &rays.t_max) {
-            return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest[lane] < f64::INFINITY) << lane)
+        if wanted.count_ones() >= TOGETHER
+            && let Some(nearest) = self.nearest_on_shape(world.level, rays, &rays.t_max)
+        {
+            return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest.t[lane] < f64::INFINITY) << lane)
                 & wanted;
         }
         bits(wanted)
@@ -219,22 +226,18 @@ impl Object {
             .fold(0, |hit, lane| hit | 1 << lane)
     }
 
-    /// Of a shape that is one face: the t at which each ray meets it first, infinite where that is not before `up_to`.
-    fn nearest_on_one_face(
-        &self,
-        level: Level,
-        rays: &RayPacket,
-        up_to: &[f64; LANES],
-    ) -> Option<[f64; LANES]> {
-        match self.geometry {
-            Geometry::Sphere => {
-                Some(dispatch!(level, _simd => nearest(&self.placement, rays, up_to, sphere::nearest)))
+    /// Where each ray meets a canonical shape first, infinite where that is not before `up_to`; none of a mesh.
+    fn nearest_on_shape(&self, level: Level, rays: &RayPacket, up_to: &[f64; LANES]) -> Option<Hits> {
+        let place = &self.placement;
+        Some(match self.geometry {
+            Geometry::Sphere => dispatch!(level, _simd => nearest(place, rays, up_to, sphere::nearest)),
+            Geometry::Cube => dispatch!(level, _simd => nearest(place, rays, up_to, cube::nearest)),
+            Geometry::Cylinder { capped } => {
+                dispatch!(level, _simd => nearest(place, rays, up_to, |ray| cylinder::nearest(ray, capped)))
             }
-            Geometry::Plane => {
-                Some(dispatch!(level, _simd => nearest(&self.placement, rays, up_to, plane::nearest)))
-            }
-            Geometry::Cube | Geometry::Cylinder { .. } | Geometry::Mesh(_) => None,
-        }
+            Geometry::Plane => dispatch!(level, _simd => nearest(place, rays, up_to, plane::nearest)),
+            Geometry::Mesh(_) => return None,
+        })
     }
 }
 
@@ -244,11 +247,11 @@ fn nearest(
     placement: &Placement,
     rays: &RayPacket,
     up_to: &[f64; LANES],
-    of_shape: impl Fn(&Ray) -> f64,
-) -> [f64; LANES] {
-    let mut nearest = [f64::INFINITY; LANES];
-    for lane in 0..LANES {
-        nearest[lane] = of_shape(&Ray { t_max: up_to[lane], ..placement.ray_to_object(&rays.ray(lane)) });
+    of_shape: impl Fn(&Ray) -> shape::Hit,
+) -> Hits {
+    let mut nearest = Hits::NONE;
+    for (lane, &t_max) in up_to.iter().enumerate() {
+        nearest.put(lane, of_shape(&Ray { t_max, ..placement.ray_to_object(&rays.ray(lane)) }));
     }
     nearest
 }
