@@ -19,6 +19,9 @@ pub(crate) fn put(vectors: &mut Vectors, lane: usize, vector: DVec3) {
     }
 }
 
+/// So many lanes are worth vector code; fewer go one by one. Untuned.
+pub(crate) const TOGETHER: u32 = 3;
+
 /// Sixteen rays by coordinate, as vector instructions want them.
 ///
 /// Shape: `[axis][lane]`. Which lanes hold a ray is for whoever made the packet to know, as a mask of a bit a lane.

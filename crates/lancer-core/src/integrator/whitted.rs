@@ -256,7 +256,6 @@ struct Arrival<'a> {
 /// A ray that continues another.
 struct Continuation {
     kind: RayKind,
-    branch: Branch,
     coefficient: Rgb,
     ray: Ray,
     media: Media,
@@ -353,14 +352,14 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             *look = self.met.look(world, lane);
         }
         self.find_lighting(rays, &looks);
+        // Light alone needs no more of a surface than has been looked at.
+        let wants_surfaces = L::HEARS || self.integrator.occlusion.is_wanted();
         let mut going_on = 0;
         for (lane, look) in looks.into_iter().enumerate() {
             let Some(Look { material, color }) = look else { continue };
             let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
             going_on |= u32::from(path.depth > 0 && self.integrator.goes_on(material)) << lane;
-            // Light alone needs no more of the surface than has been looked at.
-            let wanted = L::HEARS || self.integrator.occlusion.is_wanted();
-            let at = wanted.then(|| self.met.at(world, lane)).flatten();
+            let at = wants_surfaces.then(|| self.met.at(world, lane)).flatten();
             let listener = &mut self.listeners[lane];
             listener.begin_ray(id, path.kind, path.throughput, &ray);
             let mut point = None;
@@ -459,24 +458,22 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             let arrival = Arrival { lane, id, path, key: keys[lane], interface };
             let (reflect, transmit) = weights(material, self.bends.reflectance(lane));
             if self.integrator.wants_reflection(material) && !reflect.is_black() {
-                let (kind, branch) = (RayKind::Reflection, Branch::Reflection);
-                let (ray, media) = (self.bends.mirrored(lane), path.media);
-                self.spawn(&arrival, &Continuation { kind, branch, coefficient: reflect, ray, media });
+                let (kind, ray, media) = (RayKind::Reflection, self.bends.mirrored(lane), path.media);
+                self.spawn(&arrival, &Continuation { kind, coefficient: reflect, ray, media });
             }
             if self.integrator.wants_refraction(material) && !transmit.is_black() {
                 let (kind, ray, media) = match self.bends.refracted(lane) {
                     Some(ray) => (RayKind::Refraction, ray, interface.media_after),
                     None => (RayKind::TotalInternalReflection, self.bends.mirrored(lane), path.media),
                 };
-                let branch = Branch::Transmission;
-                self.spawn(&arrival, &Continuation { kind, branch, coefficient: transmit, ray, media });
+                self.spawn(&arrival, &Continuation { kind, coefficient: transmit, ray, media });
             }
         }
     }
 
     fn spawn(&mut self, arrival: &Arrival, continuation: &Continuation) {
         let &Arrival { lane, id, path, key, interface } = arrival;
-        let &Continuation { kind, branch, coefficient, ray, media } = continuation;
+        let &Continuation { kind, coefficient, ray, media } = continuation;
         let throughput = path.throughput * coefficient;
         if throughput.max_channel() < LEAST_THROUGHPUT {
             return;
@@ -498,6 +495,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
             ray: &ray,
         });
         *next_id += 1;
+        let branch = if kind == RayKind::Reflection { Branch::Reflection } else { Branch::Transmission };
         let path = Path { kind, throughput, depth: path.depth - 1, media };
         self.pending[lane].push_back(PendingRay { ray, path, key: key.child(branch) });
     }

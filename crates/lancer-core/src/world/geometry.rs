@@ -3,7 +3,7 @@
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, KdTree, Primitives, Tally};
 use crate::geometry::error::gamma;
-use crate::geometry::{Bounds, DVec3, Ray, RayPacket, packet};
+use crate::geometry::{Bounds, DVec2, DVec3, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
 use crate::shape::triangle::{Canonical, Nearest};
 use crate::shape::{Hit, Hits, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
@@ -178,11 +178,6 @@ impl Geometry {
         with_uv: bool,
         surfaces: &mut SurfacePoints,
     ) {
-        if let Self::Mesh(index) = self {
-            let any = hits.iter().flatten().next().map_or(0, |hit| hit.primitive);
-            let triangles = hits.map(|hit| hit.map_or(any, |hit| hit.primitive));
-            return triangle::surfaces(rays, &meshes[index as usize].mesh, &triangles, surfaces);
-        }
         // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
         let Some(any) = hits.iter().flatten().next() else { return };
         let mut local_hits = Hits::NONE;
@@ -195,18 +190,27 @@ impl Geometry {
             Self::Cube => plain_surfaces(rays, &local_hits, cube::plain_surface, surfaces),
             Self::Cylinder { .. } => plain_surfaces(rays, &local_hits, cylinder::plain_surface, surfaces),
             Self::Plane => plain_surfaces(rays, &local_hits, plane::plain_surface, surfaces),
-            Self::Mesh(_) => {}
+            Self::Mesh(index) => {
+                let mesh = &meshes[index as usize].mesh;
+                return triangle::surfaces(rays, mesh, &local_hits.primitive, surfaces);
+            }
         }
-        for lane in (0..LANES).filter(|&lane| with_uv && hits[lane].is_some()) {
-            let (point, face) = (packet::at(&surfaces.point, lane), local_hits.primitive[lane]);
-            let uv = match self {
-                Self::Sphere => sphere::uv(point),
-                Self::Cube => cube::uv(point, face),
-                Self::Cylinder { .. } => cylinder::uv(point, face),
-                Self::Plane => plane::uv(point),
-                Self::Mesh(_) => continue,
-            };
-            (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
+        if with_uv {
+            for lane in (0..LANES).filter(|&lane| hits[lane].is_some()) {
+                let uv = self.uv(packet::at(&surfaces.point, lane), local_hits.primitive[lane]);
+                (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
+            }
+        }
+    }
+
+    /// The texture coordinates of a point on a face of a shape; 0 of a mesh, which has them at its corners.
+    fn uv(self, point: DVec3, face: u32) -> DVec2 {
+        match self {
+            Self::Sphere => sphere::uv(point),
+            Self::Cube => cube::uv(point, face),
+            Self::Cylinder { .. } => cylinder::uv(point, face),
+            Self::Plane => plane::uv(point),
+            Self::Mesh(_) => DVec2::ZERO,
         }
     }
 }

@@ -4,15 +4,13 @@ use super::{Hit, Interface, Media, Object, ObjectId, Touching, World};
 use crate::accel::bits;
 use crate::color::Rgb;
 use crate::geometry::error::{ray_from_surface, segment_from_surface, stands_off};
+use crate::geometry::packet::TOGETHER;
 use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket, Vectors, packet};
 use crate::scene::{Material, MaterialId};
 use crate::shape::{self, SurfacePoint, SurfacePoints};
 use fearless_simd::dispatch;
 
 const LANES: usize = RayPacket::LANES;
-
-/// So many hits with an object are worth vector code. Untuned.
-const TOGETHER: u32 = 3;
 
 /// A triangle or another face of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

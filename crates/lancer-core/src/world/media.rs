@@ -6,6 +6,7 @@
 use super::{Hit, Intersection, Intersections, ObjectId, World};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::error::leave_surface;
+use crate::geometry::packet::TOGETHER;
 use crate::geometry::{DVec3, Ray, RayPacket, Vectors, packet};
 use crate::shape::SurfacePoints;
 use fearless_simd::dispatch;
@@ -133,9 +134,6 @@ impl Media {
 const OUTWARD: DVec3 = DVec3::new(0.437_216_12, 0.829_301_7, 0.348_027_9);
 
 const LANES: usize = RayPacket::LANES;
-
-/// So many dielectrics are looked at together. Untuned.
-const TOGETHER: u32 = 3;
 
 /// Surfaces that a search for the media around a point goes through before it takes the rest for outside.
 const MAX_CROSSINGS: usize = 10_000;

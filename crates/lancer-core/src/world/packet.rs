@@ -5,14 +5,12 @@ use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
+use crate::geometry::packet::TOGETHER;
 use crate::geometry::{Placement, Ray, RayPacket};
 use crate::shape::{self, Hits, cube, cylinder, plane, sphere};
 use fearless_simd::{Level, dispatch};
 
 const LANES: usize = RayPacket::LANES;
-
-/// So many rays are held against a shape together; fewer one by one. Untuned.
-const TOGETHER: u32 = 3;
 
 impl World {
     /// The nearest hits of the rays `wanted` of a packet, a bit for each: what [`World::intersect`] finds, found

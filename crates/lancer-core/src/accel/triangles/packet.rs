@@ -15,6 +15,7 @@ use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
 use crate::accel::bits;
 use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
+use crate::geometry::packet::TOGETHER;
 use crate::geometry::{Bounds, RayPacket};
 use crate::shape::Hit;
 use crate::shape::triangle::{self, Canonical, Corners, Nearest};
@@ -30,9 +31,6 @@ pub(crate) type Lane = [f32; LANES];
 /// Where this many rays or fewer go one way, they go on one by one: eight boxes for one ray then do more than sixteen
 /// rays for one box, most of them idle.
 const ALONE: u32 = 2;
-
-/// So many exact tests are worth vector code. Untuned.
-const TOGETHER: u32 = 3;
 
 /// The end of a ray that wants nothing more.
 pub(crate) const DONE: f32 = -1.0;
