@@ -3,6 +3,7 @@
 use super::check::check_numbers;
 use super::geometry::{Geometry, PreparedMesh, TriangleIndex};
 use super::{CompileError, Object, ObjectId, ObjectIndex, World};
+use crate::accel::bvh::Contents;
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, Accelerator, Bvh, KdSettings, KdTree, Primitives, Quality};
 use crate::cancel::CancelToken;
@@ -187,7 +188,9 @@ impl World {
             }
         }
         self.index = match options.accelerator {
-            Accelerator::Bvh => ObjectIndex::Bvh(Bvh::build_with(&boxes, options.quality, cancel)?),
+            Accelerator::Bvh => {
+                ObjectIndex::Bvh(Bvh::build_with(&boxes, Contents::Objects, options.quality, cancel)?)
+            }
             Accelerator::KdTree => {
                 ObjectIndex::Kd(KdTree::build_with(&ObjectBoxes(boxes), options.kd, cancel)?)
             }

@@ -54,15 +54,20 @@ impl Choice {
 }
 
 /// The costs of a node that is not divided.
-pub(super) fn leaf(area: f32, count: usize) -> (Costs, Choice) {
-    ([area * leaf_cost(count as u32); WIDTH - 1], Choice(LEAF | (count as u32) << COUNT))
+pub(super) fn leaf<const BLOCK: usize>(area: f32, count: usize) -> (Costs, Choice) {
+    ([area * leaf_cost::<BLOCK>(count as u32); WIDTH - 1], Choice(LEAF | (count as u32) << COUNT))
 }
 
 /// The costs of a node over two children.
 ///
 /// Costs that are no numbers choose badly, but never wrongly.
 #[inline]
-pub(super) fn inner(area: f32, count: usize, below: &Costs, above: &Costs) -> (Costs, Choice) {
+pub(super) fn inner<const BLOCK: usize>(
+    area: f32,
+    count: usize,
+    below: &Costs,
+    above: &Costs,
+) -> (Costs, Choice) {
     let share = |places: usize| {
         let mut best = (below[0] + above[places - 2], 1_u32);
         for k in 2..places {
@@ -77,7 +82,7 @@ pub(super) fn inner(area: f32, count: usize, below: &Costs, above: &Costs) -> (C
     let mut costs = [as_node; WIDTH - 1];
     if count <= MAX_LEAF {
         choice |= (count as u32) << COUNT;
-        let as_leaf = area * leaf_cost(count as u32);
+        let as_leaf = area * leaf_cost::<BLOCK>(count as u32);
         if as_leaf <= as_node {
             costs[0] = as_leaf;
             choice |= LEAF;

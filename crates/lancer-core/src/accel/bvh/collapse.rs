@@ -3,19 +3,19 @@
 //! Source: Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs"
 //! (2017), section 3.1.
 
-use super::Bvh;
 use super::binary::Binary;
 use super::grow::Grown;
 use super::node::{Child, WIDTH, WideNode};
+use super::{Bvh, Contents};
 use crate::accel::Aabb;
 use arrayvec::ArrayVec;
 use rayon::prelude::*;
 
-pub(super) fn collapse(grown: Grown) -> Bvh {
+pub(super) fn collapse(grown: Grown, contents: Contents) -> Bvh {
     let Grown { pieces, order } = grown;
     if pieces.is_empty() {
         let bounds = Aabb { min: [0.0; 3], max: [0.0; 3] };
-        return Bvh { nodes: vec![WideNode::EMPTY], order, bounds, depth: 0 };
+        return Bvh { nodes: vec![WideNode::EMPTY], order, bounds, depth: 0, contents };
     }
     let forest = Forest { pieces: &pieces };
     let root = forest.resolve(Place { piece: 0, node: 0 });
@@ -32,7 +32,7 @@ pub(super) fn collapse(grown: Grown) -> Bvh {
     } else {
         forest.emit(root, 0, &mut wide);
     }
-    Bvh { nodes: wide.nodes, order, bounds, depth: wide.depth }
+    Bvh { nodes: wide.nodes, order, bounds, depth: wide.depth, contents }
 }
 
 /// A node of a piece.

@@ -4,11 +4,11 @@
 //! those small ranges are then parted by primitives, each on its own.
 
 use super::binary::{Binary, Choice, Costs, inner, leaf};
-use super::cost::BLOCK;
+use super::cost::{OBJECTS, TRIANGLES};
 use super::extent::{Extent, around};
 use super::lattice::Cells;
 use super::split::{Parts, part, part_at_median};
-use super::{Bvh, Quality};
+use super::{Bvh, Contents, Quality};
 use crate::accel::Aabb;
 use crate::cancel::CancelToken;
 use rayon::prelude::*;
@@ -18,13 +18,13 @@ const LARGE: usize = 1 << 15;
 
 /// Primitives for each cell of a lattice, empty ones included; on surfaces most are empty. Less makes tables that do
 /// not fit caches, which costs more time than it saves; more leaves coarse borders to part at.
-const PRIMITIVES_PER_CELL: usize = 8;
+const CONTENTS_PER_CELL: usize = 8;
 
 /// Ranges of fewer cells are parted by primitives: the borders of cells are too few.
 const FEW_CELLS: usize = 32;
 
 /// Ranges of fewer primitives are parted by primitives.
-const FEW_PRIMITIVES: usize = 512;
+const FEW_CONTENTS: usize = 512;
 
 /// Smaller ranges are not worth a look at whether the build is cancelled; they take microseconds.
 const COARSE: usize = 128;
@@ -37,22 +37,16 @@ pub(super) struct Grown {
 }
 
 /// The tree over some boxes; none where it was cancelled.
-pub(super) fn grow(boxes: &[Aabb], quality: Quality, cancel: &CancelToken) -> Option<Grown> {
-    if boxes.is_empty() {
-        return Some(Grown { pieces: Vec::new(), order: Vec::new() });
+pub(super) fn grow(
+    boxes: &[Aabb],
+    contents: Contents,
+    quality: Quality,
+    cancel: &CancelToken,
+) -> Option<Grown> {
+    match contents {
+        Contents::Triangles => Grower::<TRIANGLES> { quality, cancel }.grow(boxes),
+        Contents::Objects => Grower::<OBJECTS> { quality, cancel }.grow(boxes),
     }
-    let mut items = vec![Extent::EMPTY; boxes.len()];
-    let grower = Grower { quality, cancel };
-    let tree = grower.range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
-    if cancel.is_cancelled() {
-        return None;
-    }
-    let order = items.par_iter().with_min_len(1 << 14).map(Extent::name).collect();
-    let mut pieces = vec![Vec::new()];
-    let mut crown = Vec::new();
-    tree.take_apart(&mut crown, &mut pieces);
-    pieces[0] = crown;
-    Some(Grown { pieces, order })
 }
 
 /// A part of the tree under construction.
@@ -63,7 +57,7 @@ enum Tree {
 
 impl Tree {
     /// Appends the forks to the crown and the others to the pieces.
-    fn take_apart(self, crown: &mut Vec<Binary>, pieces: &mut Vec<Vec<Binary>>) -> Costs {
+    fn take_apart<const BLOCK: usize>(self, crown: &mut Vec<Binary>, pieces: &mut Vec<Vec<Binary>>) -> Costs {
         match self {
             Self::Piece(nodes, costs) => {
                 crown.push(Binary { above: pieces.len() as u32, choice: Choice::LINK, ..nodes[0] });
@@ -74,10 +68,10 @@ impl Tree {
                 let (bounds, count, below, above) = *fork;
                 let parent = crown.len();
                 crown.push(Binary { bounds: bounds.to_aabb(), above: 0, choice: Choice::LINK });
-                let below = below.take_apart(crown, pieces);
+                let below = below.take_apart::<BLOCK>(crown, pieces);
                 crown[parent].above = crown.len() as u32;
-                let above = above.take_apart(crown, pieces);
-                let (costs, choice) = inner(bounds.half_area(), count, &below, &above);
+                let above = above.take_apart::<BLOCK>(crown, pieces);
+                let (costs, choice) = inner::<BLOCK>(bounds.half_area(), count, &below, &above);
                 crown[parent].choice = choice;
                 costs
             }
@@ -104,18 +98,37 @@ impl Plan {
     }
 }
 
-struct Grower<'a> {
+/// `BLOCK` primitives of a leaf are tested at once.
+struct Grower<'a, const BLOCK: usize> {
     quality: Quality,
     /// Once it is cancelled nothing is parted any more: the rest of the tree takes no time, and is thrown away.
     cancel: &'a CancelToken,
 }
 
-impl Grower<'_> {
+impl<const BLOCK: usize> Grower<'_, BLOCK> {
+    /// The tree over some boxes; none where it was cancelled.
+    fn grow(&self, boxes: &[Aabb]) -> Option<Grown> {
+        if boxes.is_empty() {
+            return Some(Grown { pieces: Vec::new(), order: Vec::new() });
+        }
+        let mut items = vec![Extent::EMPTY; boxes.len()];
+        let tree = self.range(|i| Extent::new(&boxes[i], i as u32), &mut items, 0);
+        if self.cancel.is_cancelled() {
+            return None;
+        }
+        let order = items.par_iter().with_min_len(1 << 14).map(Extent::name).collect();
+        let mut pieces = vec![Vec::new()];
+        let mut crown = Vec::new();
+        tree.take_apart::<BLOCK>(&mut crown, &mut pieces);
+        pieces[0] = crown;
+        Some(Grown { pieces, order })
+    }
+
     /// The tree over all items, which are written in the order of its leaves.
     fn range(&self, items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
         let count = out.len();
         if count > LARGE && !is_deep(depth, count) && !self.cancel.is_cancelled() {
-            let mut cells = Cells::new(&items, count, count / PRIMITIVES_PER_CELL);
+            let mut cells = Cells::new(&items, count, count / CONTENTS_PER_CELL);
             if cells.boxes.len() > 1 {
                 let plan = self.plan(&mut cells.boxes, count, depth, true);
                 cells.scatter(&items, out);
@@ -130,13 +143,13 @@ impl Grower<'_> {
     }
 
     fn plan(&self, cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
-        let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
+        let few = cells.len() < FEW_CELLS || count < FEW_CONTENTS;
         let ends = (few && !is_first) || self.cancel.is_cancelled();
         if cells.len() == 1 || ends || is_deep(depth, count) {
             return Plan::Rest { count };
         }
         let bounds = around(cells);
-        let Parts { length, .. } = part(cells, Quality::High);
+        let Parts { length, .. } = part::<BLOCK>(cells, Quality::High);
         let (below, above) = cells.split_at_mut(length);
         let count_below = below.iter().map(|cell| cell.weight() as usize).sum();
         let mut grow_below = || self.plan(below, count_below, depth + 1, false);
@@ -179,17 +192,18 @@ impl Grower<'_> {
     fn subtree(&self, items: &mut [Extent], bounds: &Extent, depth: u32, out: &mut Vec<Binary>) -> Costs {
         let (parent, count) = (out.len(), items.len());
         let area = bounds.half_area();
-        let (costs, choice) = leaf(area, count);
+        let (costs, choice) = leaf::<BLOCK>(area, count);
         out.push(Binary { bounds: bounds.to_aabb(), above: 0, choice });
         if count <= BLOCK || (count >= COARSE && self.cancel.is_cancelled()) {
             return costs;
         }
-        let parts = if is_deep(depth, count) { part_at_median(items) } else { part(items, self.quality) };
+        let parts =
+            if is_deep(depth, count) { part_at_median(items) } else { part::<BLOCK>(items, self.quality) };
         let (below, above) = items.split_at_mut(parts.length);
         let below = self.subtree(below, &parts.bounds[0], depth + 1, out);
         out[parent].above = out.len() as u32;
         let above = self.subtree(above, &parts.bounds[1], depth + 1, out);
-        let (costs, choice) = inner(area, count, &below, &above);
+        let (costs, choice) = inner::<BLOCK>(area, count, &below, &above);
         out[parent].choice = choice;
         costs
     }

@@ -41,6 +41,16 @@ pub enum Quality {
     Fast,
 }
 
+/// What lies in the leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contents {
+    /// Triangles, of which four are tested at once and cheaply: leaves hold up to eight.
+    Triangles,
+    /// Objects, which are searched one by one and may have trees of their own: leaves hold one, unless their boxes are
+    /// alike.
+    Objects,
+}
+
 /// Why no hierarchy was built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
@@ -64,6 +74,7 @@ pub struct Bvh {
     order: Vec<u32>,
     bounds: Aabb,
     depth: u32,
+    contents: Contents,
 }
 
 impl Bvh {
@@ -79,21 +90,26 @@ impl Bvh {
     ///
     /// # Errors
     /// [`BuildError::TooManyPrimitives`].
-    pub fn build(boxes: &[Aabb], quality: Quality) -> Result<Self, BuildError> {
-        Self::build_with(boxes, quality, &CancelToken::default())
+    pub fn build(boxes: &[Aabb], contents: Contents, quality: Quality) -> Result<Self, BuildError> {
+        Self::build_with(boxes, contents, quality, &CancelToken::default())
     }
 
     /// As [`Bvh::build`], until it is cancelled.
     ///
     /// # Errors
     /// See [`BuildError`].
-    pub fn build_with(boxes: &[Aabb], quality: Quality, cancel: &CancelToken) -> Result<Self, BuildError> {
+    pub fn build_with(
+        boxes: &[Aabb],
+        contents: Contents,
+        quality: Quality,
+        cancel: &CancelToken,
+    ) -> Result<Self, BuildError> {
         let count = boxes.len();
         if count > Self::MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives { count });
         }
-        let grown = grow::grow(boxes, quality, cancel).ok_or(BuildError::Cancelled)?;
-        Ok(collapse::collapse(grown))
+        let grown = grow::grow(boxes, contents, quality, cancel).ok_or(BuildError::Cancelled)?;
+        Ok(collapse::collapse(grown, contents))
     }
 
     /// The nodes and the primitives in the order of the leaves.

@@ -70,11 +70,11 @@ pub(super) struct Parts {
 }
 
 /// Reorders more than one item into two parts. Equal halves where no place is better than any other.
-pub(super) fn part(items: &mut [Extent], quality: Quality) -> Parts {
+pub(super) fn part<const BLOCK: usize>(items: &mut [Extent], quality: Quality) -> Parts {
     let centers = around_centers(items);
     let parts = match quality {
-        Quality::High => part_along(items, &centers, [0, 1, 2]),
-        Quality::Fast => part_along(items, &centers, [longest(&centers)]),
+        Quality::High => part_along::<BLOCK, 3>(items, &centers, [0, 1, 2]),
+        Quality::Fast => part_along::<BLOCK, 1>(items, &centers, [longest(&centers)]),
     };
     parts.unwrap_or_else(|| halves(items, items.len() / 2))
 }
@@ -83,13 +83,17 @@ pub(super) fn part(items: &mut [Extent], quality: Quality) -> Parts {
 ///
 /// Fewer bins miss good borders, more cost time in every node; small ranges have few places to be parted at.
 #[inline(always)]
-fn part_along<const A: usize>(items: &mut [Extent], centers: &Extent, axes: [usize; A]) -> Option<Parts> {
+fn part_along<const BLOCK: usize, const A: usize>(
+    items: &mut [Extent],
+    centers: &Extent,
+    axes: [usize; A],
+) -> Option<Parts> {
     match items.len() {
-        0..=8 => part_swept::<8, A>(items, axes),
-        9..=16 => part_swept::<16, A>(items, axes),
-        17..64 => part_binned::<8, A>(items, centers, axes),
-        64..512 => part_binned::<16, A>(items, centers, axes),
-        _ => part_binned::<32, A>(items, centers, axes),
+        0..=8 => part_swept::<BLOCK, 8, A>(items, axes),
+        9..=16 => part_swept::<BLOCK, 16, A>(items, axes),
+        17..64 => part_binned::<BLOCK, 8, A>(items, centers, axes),
+        64..512 => part_binned::<BLOCK, 16, A>(items, centers, axes),
+        _ => part_binned::<BLOCK, 32, A>(items, centers, axes),
     }
 }
 
@@ -110,13 +114,13 @@ pub(super) fn part_at_median(items: &mut [Extent]) -> Parts {
     halves(items, half)
 }
 
-fn part_binned<const BINS: usize, const A: usize>(
+fn part_binned<const BLOCK: usize, const BINS: usize, const A: usize>(
     items: &mut [Extent],
     centers: &Extent,
     axes: [usize; A],
 ) -> Option<Parts> {
     let grid = Grid::<BINS>::new(centers);
-    let (border, bounds) = best_border(items, &grid, axes)?;
+    let (border, bounds) = best_border::<BLOCK, BINS, A>(items, &grid, axes)?;
     let mut length = 0;
     for i in 0..items.len() {
         // Without a branch, which would be taken half of the time.
@@ -127,7 +131,7 @@ fn part_binned<const BINS: usize, const A: usize>(
     Some(Parts { length, bounds })
 }
 
-fn best_border<const BINS: usize, const A: usize>(
+fn best_border<const BLOCK: usize, const BINS: usize, const A: usize>(
     items: &[Extent],
     grid: &Grid<BINS>,
     axes: [usize; A],
@@ -151,7 +155,7 @@ fn best_border<const BINS: usize, const A: usize>(
         for axis in 0..A {
             rest[axis] = rest[axis].union(&boxes[bin][axis]);
             weight[axis] += weights[bin][axis];
-            above[bin][axis] = rest[axis].half_area() * leaf_cost(weight[axis]);
+            above[bin][axis] = rest[axis].half_area() * leaf_cost::<BLOCK>(weight[axis]);
         }
     }
     let total: [u32; A] = std::array::from_fn(|axis| weight[axis] + weights[0][axis]);
@@ -162,7 +166,7 @@ fn best_border<const BINS: usize, const A: usize>(
         for axis in 0..A {
             rest[axis] = rest[axis].union(&boxes[bin - 1][axis]);
             weight[axis] += weights[bin - 1][axis];
-            let cost = rest[axis].half_area() * leaf_cost(weight[axis]) + above[bin][axis];
+            let cost = rest[axis].half_area() * leaf_cost::<BLOCK>(weight[axis]) + above[bin][axis];
             // Empty sides have no area that compares.
             if cost < least && weight[axis] > 0 && weight[axis] < total[axis] {
                 least = cost;
@@ -205,7 +209,10 @@ fn sorted<const N: usize, const A: usize>(
     })
 }
 
-fn part_swept<const N: usize, const A: usize>(items: &mut [Extent], axes: [usize; A]) -> Option<Parts> {
+fn part_swept<const BLOCK: usize, const N: usize, const A: usize>(
+    items: &mut [Extent],
+    axes: [usize; A],
+) -> Option<Parts> {
     let length = items.len();
     let mut local = [Extent::EMPTY; N];
     local[..length].copy_from_slice(items);
@@ -220,8 +227,8 @@ fn part_swept<const N: usize, const A: usize>(items: &mut [Extent], axes: [usize
             let (low, high) = (&local[order[i - 1] as usize % N], &local[order[length - i] as usize % N]);
             (first, last) = (first.union(low), last.union(high));
             (count_first, count_last) = (count_first + low.weight(), count_last + high.weight());
-            below[i] = first.half_area() * leaf_cost(count_first);
-            above[length - i] = last.half_area() * leaf_cost(count_last);
+            below[i] = first.half_area() * leaf_cost::<BLOCK>(count_first);
+            above[length - i] = last.half_area() * leaf_cost::<BLOCK>(count_last);
         }
         for (i, (below, above)) in below.iter().zip(&above).enumerate().take(length).skip(1) {
             let cost = below + above;

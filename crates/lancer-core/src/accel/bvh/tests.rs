@@ -3,11 +3,16 @@
 use super::*;
 use crate::testing::Random;
 
+/// The hierarchy over triangles; that over objects is held to the same.
 fn build(boxes: &[Aabb], quality: Quality) -> Bvh {
-    let bvh = Bvh::build(boxes, quality).unwrap();
-    assert_eq!(bvh.validate(boxes), Ok(()));
-    bvh
+    for contents in CONTENTS {
+        let bvh = Bvh::build(boxes, contents, quality).unwrap();
+        assert_eq!(bvh.validate(boxes), Ok(()));
+    }
+    Bvh::build(boxes, Contents::Triangles, quality).unwrap()
 }
+
+const CONTENTS: [Contents; 2] = [Contents::Triangles, Contents::Objects];
 
 const QUALITIES: [Quality; 2] = [Quality::High, Quality::Fast];
 
@@ -121,7 +126,7 @@ fn hundreds_of_thousands_of_awkward_boxes_build_in_linear_memory() {
     for ((name, boxes), quality) in
         awkward(n).into_iter().flat_map(|case| QUALITIES.map(|q| (case.clone(), q)))
     {
-        let bvh = Bvh::build(&boxes, quality).unwrap();
+        let bvh = Bvh::build(&boxes, Contents::Triangles, quality).unwrap();
         assert_eq!(bvh.validate(&boxes), Ok(()), "{name}");
         let (nodes, depth) = (bvh.nodes().len(), bvh.depth());
         assert!(nodes <= n as usize / 5, "{name}: {nodes} nodes");
@@ -143,7 +148,7 @@ fn the_hierarchy_does_not_depend_on_the_number_of_threads() {
     let boxes = scattered(3, 200_000, 0.01);
     for quality in QUALITIES {
         let shape = |threads: usize| {
-            let build = || Bvh::build(&boxes, quality).unwrap();
+            let build = || Bvh::build(&boxes, Contents::Triangles, quality).unwrap();
             let bvh = crate::render::with_threads(threads, build).unwrap();
             (bvh.nodes, bvh.order, bvh.depth)
         };
@@ -169,7 +174,21 @@ fn a_child_remembers_what_it_was_made_of() {
 #[test]
 fn a_single_box_costs_a_step_and_a_block() {
     let boxes = [Aabb { min: [0.0; 3], max: [1.0, 2.0, 3.0] }];
-    assert_eq!(build(&boxes, Quality::High).expected_cost(), f64::from(cost::NODE_COST + cost::BLOCK_COST));
+    for (contents, block) in [(Contents::Triangles, cost::TRIANGLES), (Contents::Objects, cost::OBJECTS)] {
+        let bvh = Bvh::build(&boxes, contents, Quality::High).unwrap();
+        assert_eq!(bvh.expected_cost(), f64::from(cost::NODE_COST + cost::block_cost(block)));
+    }
+}
+
+#[test]
+fn an_object_has_a_leaf_to_itself_unless_boxes_are_alike() {
+    let count = |boxes: &[Aabb]| {
+        let bvh = Bvh::build(boxes, Contents::Objects, Quality::High).unwrap();
+        let leaves = bvh.nodes().iter().flat_map(|node| (0..WIDTH).map(|place| node.child(place)));
+        leaves.filter(|leaf| leaf.is_leaf() && !leaf.is_none()).map(Child::count).max()
+    };
+    assert_eq!(count(&scattered(5, 10_000, 0.01)), Some(1));
+    assert_eq!(count(&[scattered(5, 1, 0.1)[0]; 8]), Some(8));
 }
 
 #[test]
@@ -215,7 +234,7 @@ fn boxes_that_are_no_numbers_do_no_harm() {
         *broken = Aabb { min: [f32::NAN; 3], max: [f32::NAN; 3] };
     }
     for quality in QUALITIES {
-        let bvh = Bvh::build(&boxes, quality).unwrap();
+        let bvh = Bvh::build(&boxes, Contents::Triangles, quality).unwrap();
         assert_eq!(bvh.order().len(), boxes.len());
         assert!(bvh.depth() <= Bvh::MAX_DEPTH);
     }
@@ -228,7 +247,7 @@ fn a_cancelled_build_makes_no_hierarchy() {
     // Small, sorted into cells, and with all centres in one point.
     for boxes in [scattered(1, 10, 0.1), scattered(2, 50_000, 0.01), vec![scattered(3, 1, 0.1)[0]; 50_000]] {
         for quality in QUALITIES {
-            let built = Bvh::build_with(&boxes, quality, &cancel);
+            let built = Bvh::build_with(&boxes, Contents::Objects, quality, &cancel);
             assert_eq!(built.map(drop), Err(BuildError::Cancelled));
         }
     }

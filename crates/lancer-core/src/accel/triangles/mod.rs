@@ -21,7 +21,7 @@ pub(crate) use walk::walk;
 
 use super::Aabb;
 use super::bits;
-use super::bvh::{BuildError, Bvh, Child, Quality, WideNode, boxes_at};
+use super::bvh::{BuildError, Bvh, Child, Contents, Quality, WideNode, boxes_at};
 use super::tally::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::geometry::{Bounds, DirectionFan, Ray, RayPacket};
@@ -82,7 +82,7 @@ impl TriangleTree {
     ) -> Result<Self, BuildError> {
         let boxes: Vec<Aabb> =
             (0..mesh.triangle_count() as u32).into_par_iter().map(|id| box_of(&mesh.vertices(id))).collect();
-        let bvh = Bvh::build_with(&boxes, quality, cancel)?;
+        let bvh = Bvh::build_with(&boxes, Contents::Triangles, quality, cancel)?;
         drop(boxes);
         let depth = bvh.depth();
         let (mut nodes, order) = bvh.into_parts();
