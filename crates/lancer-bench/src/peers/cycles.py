@@ -105,7 +105,7 @@ def body(thing):
         points = numpy.array([(-1e4, 0, -1e4), (-1e4, 0, 1e4), (1e4, 0, 1e4), (1e4, 0, -1e4)], "<f4")
         faces = numpy.array([(0, 1, 2), (0, 2, 3)], "i4")
     else:
-        points, faces = read_ply(os.path.join(os.path.dirname(scene_file), kind["mesh"]))
+        points, faces = read_ply(os.path.join(os.path.dirname(scene_file), kind["mesh"]["file"]))
     mesh = bpy.data.meshes.new("mesh")
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", points.ravel())

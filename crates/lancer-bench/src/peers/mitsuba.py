@@ -57,7 +57,7 @@ def shape(thing):
         flat = T().rotate([1, 0, 0], -90) @ T().scale([1e4, 1e4, 1])
         body = {"type": "rectangle", "to_world": place @ flat}
     else:
-        path = os.path.join(os.path.dirname(scene_file), kind["mesh"])
+        path = os.path.join(os.path.dirname(scene_file), kind["mesh"]["file"])
         with open(path, "rb") as file:
             smooth = b"property float nx" in file.read(400)
         body = {"type": "ply", "filename": path, "to_world": place, "face_normals": not smooth}

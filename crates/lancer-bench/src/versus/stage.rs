@@ -224,8 +224,9 @@ const IN_THE_MONASTERY: View = View::Inside {
     lights: [DVec3::new(0.2, 0.6, 0.6), DVec3::new(-0.3, 0.9, -0.2)],
 };
 
-/// Where a package put its file: in the directory itself, or where npm or pip put packages below it.
+/// Where a package put its file, packed or not: in the directory itself, or where npm or pip put packages below it.
 fn find(models: &Path, file: &str) -> Option<PathBuf> {
-    let places = ["", "node_modules", "python", "pb"].map(|place| models.join(place).join(file));
-    places.into_iter().find(|path| path.is_file())
+    let packed = format!("{file}.gz");
+    let places = ["", "node_modules", "python"].map(|place| models.join(place));
+    places.iter().flat_map(|place| [place.join(file), place.join(&packed)]).find(|path| path.is_file())
 }
