@@ -18,13 +18,13 @@ const LARGE: usize = 1 << 15;
 
 /// Primitives for each cell of a lattice, empty ones included; on surfaces most are empty. Less makes tables that do
 /// not fit caches, which costs more time than it saves; more leaves coarse borders to part at.
-const CONTENTS_PER_CELL: usize = 8;
+const PRIMITIVES_PER_CELL: usize = 8;
 
 /// Ranges of fewer cells are parted by primitives: the borders of cells are too few.
 const FEW_CELLS: usize = 32;
 
 /// Ranges of fewer primitives are parted by primitives.
-const FEW_CONTENTS: usize = 512;
+const FEW_PRIMITIVES: usize = 512;
 
 /// Smaller ranges are not worth a look at whether the build is cancelled; they take microseconds.
 const COARSE: usize = 128;
@@ -128,7 +128,7 @@ impl<const BLOCK: usize> Grower<'_, BLOCK> {
     fn range(&self, items: impl Fn(usize) -> Extent + Sync, out: &mut [Extent], depth: u32) -> Tree {
         let count = out.len();
         if count > LARGE && !is_deep(depth, count) && !self.cancel.is_cancelled() {
-            let mut cells = Cells::new(&items, count, count / CONTENTS_PER_CELL);
+            let mut cells = Cells::new(&items, count, count / PRIMITIVES_PER_CELL);
             if cells.boxes.len() > 1 {
                 let plan = self.plan(&mut cells.boxes, count, depth, true);
                 cells.scatter(&items, out);
@@ -143,7 +143,7 @@ impl<const BLOCK: usize> Grower<'_, BLOCK> {
     }
 
     fn plan(&self, cells: &mut [Extent], count: usize, depth: u32, is_first: bool) -> Plan {
-        let few = cells.len() < FEW_CELLS || count < FEW_CONTENTS;
+        let few = cells.len() < FEW_CELLS || count < FEW_PRIMITIVES;
         let ends = (few && !is_first) || self.cancel.is_cancelled();
         if cells.len() == 1 || ends || is_deep(depth, count) {
             return Plan::Rest { count };
