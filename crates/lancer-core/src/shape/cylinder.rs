@@ -24,8 +24,8 @@ pub fn intersect(ray: &Ray, capped: bool) -> Option<Hit> {
 #[inline(always)]
 pub(crate) fn nearest(ray: &Ray, capped: bool) -> Hit {
     let side = side_chord(ray);
-    let caps = Chord::slab(ray.origin.y, ray.direction.y, BOTTOM, TOP);
     if capped {
+        let caps = Chord::slab(ray.origin.y, ray.direction.y, BOTTOM, TOP);
         side.clip(caps).first_hit(ray.t_max, |_| true)
     } else {
         side.first_hit(ray.t_max, |t| ray.at(t).y.abs() <= 1.0)

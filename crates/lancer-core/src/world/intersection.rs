@@ -226,8 +226,9 @@ impl Intersections {
         media: &Media,
         touching: &[Touching],
     ) -> Interface {
-        let Some(hit) = self.hits[lane] else { return Interface::default() };
-        let material = world.material(world.object(hit.object).material);
+        let (Some(hit), Some(material)) = (self.hits[lane], self.material(world, lane)) else {
+            return Interface::default();
+        };
         if material.transmit.is_black() {
             return Interface { ior_before: media.ior(world), ior_after: material.ior, media_after: *media };
         }
