@@ -112,7 +112,7 @@ impl World {
                 lanes
             }, t_max };
             while let Some((group, backward)) = packet.octant(simd, &mut open) {
-                let mut end = packet.ends_of(group);
+                let mut end = packet.ends_of(simd, group);
                 walk_packet(simd, tree.nodes(), &packet, group, backward, &mut end, &mut visitor);
             }
         });

@@ -30,6 +30,12 @@ pub(super) fn blocks_of(leaf: Child) -> impl Iterator<Item = (usize, usize)> {
     (0..leaf.count().div_ceil(BLOCK)).map(move |i| (leaf.first() + i, (leaf.count() - i * BLOCK).min(BLOCK)))
 }
 
+/// The place of a triangle among those of all blocks.
+#[inline(always)]
+pub(super) fn place_of(block: usize, triangle: usize) -> u32 {
+    (block * BLOCK + triangle) as u32
+}
+
 /// What rays do with triangles, a bit for each pair of a ray and a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdict<V> {

@@ -7,6 +7,7 @@
 mod block;
 mod fan;
 mod lanes;
+mod nearby;
 mod packet;
 mod ray;
 mod single;
@@ -217,12 +218,15 @@ impl TriangleTree {
         nearest.found()
     }
 
+    /// The triangle at a place in the blocks, counted over all of them, and its id.
+    fn triangle_at(&self, place: u32) -> (u32, [[f32; 3]; 3]) {
+        let (block, triangle) = (&self.blocks[place as usize / BLOCK], place as usize % BLOCK);
+        (block.ids[triangle], block.triangle(triangle))
+    }
+
     /// The triangles of a leaf.
     fn leaf(&self, leaf: Child) -> impl Iterator<Item = (u32, [[f32; 3]; 3])> {
-        (0..leaf.count()).map(move |i| {
-            let block = &self.blocks[leaf.first() + i / BLOCK];
-            (block.ids[i % BLOCK], block.triangle(i % BLOCK))
-        })
+        (0..leaf.count()).map(move |i| self.triangle_at(block::place_of(leaf.first(), i)))
     }
 }
 

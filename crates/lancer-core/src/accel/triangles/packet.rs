@@ -7,23 +7,23 @@
 //! Boulos, Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies" (2007), for packets.
 
 use super::TriangleTree;
-use super::block::{Block, TestRays, Verdict, blocks_of};
+use super::block::{Block, TestRays, Verdict, blocks_of, place_of};
 use super::lanes::{load3, splat3};
-use super::ray::{Clipped, NarrowRay, UNIT_ROUNDOFF};
-use super::single::{self, Candidate, Candidates, add_leaf};
+use super::nearby::{Nearby, Others};
+use super::ray::{Clipped, NarrowRay};
+use super::single::{self, add_leaf};
 use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
 use crate::accel::bits;
 use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
-use crate::geometry::packet::TOGETHER;
 use crate::geometry::{Bounds, RayPacket};
 use crate::shape::Hit;
-use crate::shape::triangle::{self, Canonical, Corners, Nearest};
+use crate::shape::triangle::Canonical;
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16};
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x16};
 
-const LANES: usize = RayPacket::LANES;
+pub(super) const LANES: usize = RayPacket::LANES;
 
 /// A number for each ray.
 pub(crate) type Lane = [f32; LANES];
@@ -117,12 +117,9 @@ impl NarrowPacket {
 
     /// The ends of the rays of a group; the others are done with.
     #[inline(always)]
-    pub(crate) fn ends_of(&self, group: u32) -> Lane {
-        let mut ends = self.end;
-        for (lane, end) in ends.iter_mut().enumerate() {
-            *end = if group >> lane & 1 == 1 { *end } else { DONE };
-        }
-        ends
+    pub(crate) fn ends_of<S: Simd>(&self, simd: S, group: u32) -> Lane {
+        let ends = f32x16::load_array_ref(simd, &self.end);
+        mask(simd, group).select(ends, f32x16::splat(simd, DONE)).into()
     }
 
     /// Takes from `open` a group of rays whose directions have the same signs: which, and which axes they go down.
@@ -209,12 +206,14 @@ impl Beam {
 /// The values of a group's rays; those of the others are like one of them.
 #[inline(always)]
 fn of_group<S: Simd>(simd: S, values: &Lane, group: u32) -> f32x16<S> {
-    let first = values[group.trailing_zeros() as usize];
-    let mut of_group = *values;
-    for (lane, value) in of_group.iter_mut().enumerate() {
-        *value = if group >> lane & 1 == 1 { *value } else { first };
-    }
-    f32x16::load_array_ref(simd, &of_group)
+    let first = f32x16::splat(simd, values[group.trailing_zeros() as usize]);
+    mask(simd, group).select(f32x16::load_array_ref(simd, values), first)
+}
+
+/// The lanes whose bits are set.
+#[inline(always)]
+pub(super) fn mask<S: Simd>(simd: S, lanes: u32) -> mask32x16<S> {
+    mask32x16::from_bitmask(simd, lanes.into())
 }
 
 /// Who is shown what rays meet. A trait and not a closure, since vector code must be inlined.
@@ -364,19 +363,6 @@ fn rays_that_meet<S: Simd>(
     enter.simd_le(leave).to_bitmask() as u32
 }
 
-/// Where each ray that may hit a triangle hits it at the soonest, and each that does for sure at the latest.
-#[inline(always)]
-fn range<S: Simd>(simd: S, verdict: &Verdict<f32x16<S>>) -> (Lane, Lane) {
-    let &Verdict { numerator, numerator_error, denominator, denominator_error, .. } = verdict;
-    let zero = f32x16::splat(simd, 0.0);
-    let low = (numerator - numerator_error).max(zero);
-    let earliest = low / (denominator + denominator_error) * (1.0 - 4.0 * UNIT_ROUNDOFF);
-    let known = denominator.simd_gt(denominator_error);
-    let latest =
-        (numerator + numerator_error) / (denominator - denominator_error) * (1.0 + 4.0 * UNIT_ROUNDOFF);
-    (known.select(earliest, zero).into(), latest.into())
-}
-
 /// Tests the rays `lanes` against a triangle, for hits with `s` in (0, `end`).
 #[inline(always)]
 fn test<S: Simd>(
@@ -408,7 +394,8 @@ pub(super) fn intersect<S: Simd>(
 ) -> ([Option<Hit>; LANES], u32) {
     let ReadyRays { rays, narrow: packet } = rays;
     let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
-    let mut search = NearestSearch { simd, tree, packet, candidates: Default::default(), left_over: 0 };
+    let mut others = Others::new();
+    let mut search = NearestSearch { simd, tree, packet, nearby: Nearby::new(&mut others) };
     let mut ends = packet.end;
     let mut searched = 0;
     while let Some((group, backward)) = packet.octant(simd, &mut open) {
@@ -416,60 +403,15 @@ pub(super) fn intersect<S: Simd>(
             left_over |= group;
             continue;
         }
-        let mut end = packet.ends_of(group);
+        let mut end = packet.ends_of(simd, group);
         walk_packet(simd, &tree.nodes, packet, group, backward, &mut end, &mut search);
         searched |= group;
         for lane in bits(group) {
             ends[lane] = end[lane];
         }
     }
-    let overflown = search.left_over;
-    (settle(tree, rays, &mut search.candidates, &ends, searched & !overflown), left_over | overflown)
-}
-
-/// Lets the canonical test decide between the candidates of the rays `wanted`: for all rays at once that have but one,
-/// as most do.
-#[inline(always)]
-fn settle(
-    tree: &TriangleTree,
-    rays: &RayPacket,
-    candidates: &mut [Candidates; LANES],
-    ends: &Lane,
-    wanted: u32,
-) -> [Option<Hit>; LANES] {
-    let mut hits = [None; LANES];
-    let mut ids = [0; LANES];
-    let mut triangles = Corners::ZERO;
-    let mut single = bits(wanted)
-        .filter(|&lane| candidates[lane].only().is_some())
-        .fold(0, |single, lane| single | 1_u32 << lane);
-    if single.count_ones() < TOGETHER {
-        single = 0;
-    }
-    for lane in bits(single) {
-        if let Some(candidate) = candidates[lane].only() {
-            let block = &tree.blocks[candidate.block as usize];
-            triangles.put(lane, &block.triangle(candidate.triangle as usize));
-            ids[lane] = block.ids[candidate.triangle as usize];
-        }
-    }
-    if single != 0 {
-        let nearest = triangle::nearest(rays, &triangles);
-        for lane in bits(single) {
-            let hit = Hit { t: nearest[lane], primitive: ids[lane] };
-            hits[lane] = (hit.t < f64::INFINITY).then_some(hit);
-        }
-    }
-    for lane in bits(wanted & !single) {
-        let candidates = &mut candidates[lane];
-        if !candidates.is_empty() {
-            let ray = rays.ray(lane);
-            let mut nearest = Nearest::new(&ray);
-            candidates.settle(tree, &mut nearest, ends[lane]);
-            hits[lane] = nearest.found();
-        }
-    }
-    hits
+    left_over |= search.nearby.left_over;
+    (search.nearby.settle(simd, tree, rays, &ends, searched & !left_over), left_over)
 }
 
 /// A search for nearest hits on its way.
@@ -477,9 +419,7 @@ struct NearestSearch<'a, S: Simd> {
     simd: S,
     tree: &'a TriangleTree,
     packet: &'a NarrowPacket,
-    candidates: [Candidates; LANES],
-    /// Rays that had no room for all of theirs.
-    left_over: u32,
+    nearby: Nearby<'a>,
 }
 
 impl<S: Simd> Visitor for NearestSearch<'_, S> {
@@ -497,15 +437,8 @@ impl<S: Simd> Visitor for NearestSearch<'_, S> {
             let met = beam_meets_triangles(self.simd, &self.tree.blocks[block], beam, count);
             for triangle in bits(met) {
                 let verdict = test(self.simd, self.packet, &self.tree.blocks[block], triangle, lanes, end);
-                if verdict.maybe == 0 {
-                    continue;
-                }
-                let (earliest, latest) = range(self.simd, &verdict);
-                for lane in bits(verdict.maybe) {
-                    let latest = (verdict.sure >> lane & 1 == 1).then_some(latest[lane]);
-                    let (block, triangle) = (block as u32, triangle as u32);
-                    let candidate = Candidate { block, triangle, earliest: earliest[lane] };
-                    self.add(lane, candidate, latest, &mut end[lane]);
+                if verdict.maybe != 0 {
+                    self.nearby.add(self.simd, place_of(block, triangle), &verdict, end);
                 }
             }
         }
@@ -520,14 +453,6 @@ impl<S: Simd> NearestSearch<'_, S> {
         let (simd, nodes) = (self.simd, &self.tree.nodes);
         let mut visitor = Alone { search: self, block_ray, lane, end };
         walk_from(simd, nodes, child, &ray, &Uncounted, &mut visitor);
-    }
-
-    #[inline]
-    fn add(&mut self, lane: usize, candidate: Candidate, latest: Option<f32>, end: &mut f32) {
-        if !self.candidates[lane].add(candidate, latest, end) {
-            self.left_over |= 1 << lane;
-            *end = DONE;
-        }
     }
 }
 
@@ -544,7 +469,7 @@ impl<S: Simd> LeafVisitor for Alone<'_, '_, S> {
     fn leaf(&mut self, leaf: Child) -> f32 {
         let NearestSearch { simd, tree, .. } = *self.search;
         add_leaf(simd, tree, &self.block_ray, leaf, self.end, |candidate, latest, end| {
-            self.search.add(self.lane, candidate, latest, end);
+            self.search.nearby.add_to(self.lane, candidate, latest, end);
         });
         *self.end
     }
@@ -567,7 +492,7 @@ pub(super) fn occluded<S: Simd>(
             left_over |= group;
             continue;
         }
-        let mut end = packet.ends_of(group);
+        let mut end = packet.ends_of(simd, group);
         walk_packet(simd, &tree.nodes, packet, group, backward, &mut end, &mut search);
     }
     (search.occluded, left_over)

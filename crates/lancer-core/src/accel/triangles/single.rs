@@ -1,7 +1,7 @@
 //! One ray against the triangles of a mesh.
 
 use super::TriangleTree;
-use super::block::{TestRays, blocks_of};
+use super::block::{TestRays, blocks_of, place_of};
 use super::ray::NarrowRay;
 use super::walk::{LeafVisitor, walk, walk_from};
 use crate::accel::bvh::Child;
@@ -20,34 +20,19 @@ pub(super) struct Candidates(ArrayVec<Candidate, { Self::ROOM }>);
 /// One of them, and where the ray hits it at the soonest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    pub(super) block: u32,
-    pub(super) triangle: u32,
+    /// See [`TriangleTree::triangle_at`].
+    pub(super) place: u32,
     pub(super) earliest: f32,
 }
 
 impl Candidates {
     const ROOM: usize = 8;
 
-    /// Adds one that lies before `end`. Where it is hit for sure, `latest` at the latest, that is the new end.
-    /// False where there is no room.
+    /// Adds one to those that lie before `end`. False where there is no room.
     #[inline(always)]
-    pub(super) fn add(&mut self, candidate: Candidate, latest: Option<f32>, end: &mut f32) -> bool {
-        if let Some(latest) = latest {
-            *end = end.min(latest);
-        }
-        if self.0.is_full() || latest.is_some() {
-            let end = *end;
-            self.0.retain(|candidate| candidate.earliest <= end);
-        }
+    pub(super) fn add(&mut self, candidate: Candidate, end: f32) -> bool {
+        self.0.retain(|candidate| candidate.earliest <= end);
         self.0.try_push(candidate).is_ok()
-    }
-
-    /// The candidate, if there is but one.
-    pub(super) fn only(&self) -> Option<Candidate> {
-        match self.0[..] {
-            [candidate] => Some(candidate),
-            _ => None,
-        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -58,9 +43,8 @@ impl Candidates {
     #[inline(never)]
     pub(super) fn settle(&mut self, tree: &TriangleTree, nearest: &mut Nearest, end: f32) {
         for candidate in self.0.drain(..).filter(|candidate| candidate.earliest <= end) {
-            let block = &tree.blocks[candidate.block as usize];
-            let triangle = candidate.triangle as usize;
-            nearest.consider(block.ids[triangle], &block.triangle(triangle));
+            let (id, triangle) = tree.triangle_at(candidate.place);
+            nearest.consider(id, &triangle);
         }
     }
 }
@@ -84,7 +68,7 @@ pub(super) fn add_leaf<S: Simd>(
             maybe &= maybe - 1;
             let latest = (verdict.sure >> lane & 1 == 1).then(|| verdict.latest(lane));
             let earliest = verdict.earliest(lane);
-            add(Candidate { block: index as u32, triangle: lane as u32, earliest }, latest, end);
+            add(Candidate { place: place_of(index, lane), earliest }, latest, end);
         }
     }
 }
@@ -136,13 +120,14 @@ impl<S: Simd, T: Tally> LeafVisitor for NearestSearch<'_, S, T> {
         self.tally.triangles(leaf.count());
         let mut end = self.end;
         add_leaf(self.simd, self.tree, &self.block_ray, leaf, &mut end, |candidate, latest, end| {
-            if !self.candidates.add(candidate, latest, end) {
+            *end = latest.map_or(*end, |latest| end.min(latest));
+            if !self.candidates.add(candidate, *end) {
                 let nearest = self.nearest.get_or_insert_with(|| Nearest::new(self.ray));
                 self.candidates.settle(self.tree, nearest, *end);
                 if nearest.found().is_some() {
                     *end = end.min(self.narrow.up_to(nearest.t()));
                 }
-                self.candidates.add(candidate, latest, end);
+                self.candidates.add(candidate, *end);
             }
         });
         self.end = end;
