@@ -135,6 +135,11 @@ impl<'w> Whitted<'w> {
         self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted, sums);
     }
 
+    /// The radiance that arrives along a camera ray that meets nothing; none where no pixel can hold it.
+    pub(crate) fn background(&self) -> Option<Rgb> {
+        Some(self.world.background()).filter(|background| fits_a_pixel(*background))
+    }
+
     #[expect(clippy::too_many_arguments, reason = "as above")]
     fn trace<L: Listener, T: Tally>(
         &self,
@@ -153,8 +158,7 @@ impl<'w> Whitted<'w> {
         let mut radiances = [Rgb::BLACK; LANES];
         walk.run(rays, media, &mut radiances);
         for (sum, radiance) in sums.iter_mut().zip(radiances) {
-            // In the precision of a pixel, which holds less than this one does.
-            if radiance.map(|channel| f64::from(channel as f32)).is_finite() {
+            if fits_a_pixel(radiance) {
                 *sum += radiance;
             } else {
                 counts.replaced += 1;
@@ -224,6 +228,11 @@ impl<'w> Whitted<'w> {
     pub fn occlusion_at(&self, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
         self.occlusion.factor(self.world, at, key, counts)
     }
+}
+
+/// Whether it is finite in the precision of a pixel, which holds less than this one does.
+fn fits_a_pixel(radiance: Rgb) -> bool {
+    radiance.map(|channel| f64::from(channel as f32)).is_finite()
 }
 
 /// So many rays are traced together; fewer go one by one.

@@ -1,5 +1,6 @@
 //! Tiles to threads, threads to film.
 
+use super::cover::Cover;
 use super::{Control, Tile};
 use crate::camera::{Camera, CameraError, Projection};
 use crate::color::Rgb;
@@ -105,13 +106,9 @@ pub fn render(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    let media = Media::around(world, camera.eye);
-    frame.render(control, &|rays: &CameraRays,
-                            scratch: &mut Scratch,
-                            counts: &mut RayCounts,
-                            found: &mut Found| {
-        integrator.add_radiances(rays, &media, scratch, counts, found);
-    })
+    let cover = Cover::new(world, &frame.projection, &frame.region);
+    let painter = RadiancePainter { integrator, media: Media::around(world, camera.eye), cover };
+    frame.render(control, &painter)
 }
 
 /// Renders c_a alone, as grey: how open to the ambient light the surface is that each camera ray meets; 1 where it
@@ -128,11 +125,8 @@ pub fn render_occlusion(
 ) -> Result<Render, RenderError> {
     let frame = Frame::new(camera, settings, region)?;
     let integrator = Whitted::new(world, settings).until(&control.cancel);
-    frame.render(control, &|rays: &CameraRays, _: &mut Scratch, counts: &mut RayCounts, found: &mut Found| {
-        for (found, occlusion) in found.iter_mut().zip(integrator.occlusions(rays, counts)) {
-            *found = Rgb::grey(occlusion);
-        }
-    })
+    let cover = Cover::new(world, &frame.projection, &frame.region);
+    frame.render(control, &OcclusionPainter { integrator, cover })
 }
 
 /// What is to be rendered: checked, before anything is allocated.
@@ -201,6 +195,11 @@ pub(super) trait Painter: Sync {
     /// they come one by one, in reading order.
     const SIDE: u32;
 
+    /// What every camera ray of some pixels of the region yields, where that is known without tracing them.
+    fn blank(&self, _pixels: &Region) -> Option<Rgb> {
+        None
+    }
+
     /// Finds what camera rays yield, and adds it to the black that is there; something unfinished once the render is
     /// cancelled.
     fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts, found: &mut Found);
@@ -218,7 +217,15 @@ pub(super) const BLOCK: u32 = 4;
 /// What each of some camera rays yields.
 pub(super) type Found = [Rgb; RayPacket::LANES];
 
-impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Found) + Sync> Painter for F {
+/// Paints what camera rays see.
+struct RadiancePainter<'w> {
+    integrator: Whitted<'w>,
+    /// Around the eye.
+    media: Media,
+    cover: Cover,
+}
+
+impl Painter for RadiancePainter<'_> {
     type Tile = Scratch;
 
     fn begin_tile(&self) -> Scratch {
@@ -227,8 +234,36 @@ impl<F: Fn(&CameraRays, &mut Scratch, &mut RayCounts, &mut Found) + Sync> Painte
 
     const SIDE: u32 = BLOCK;
 
+    fn blank(&self, pixels: &Region) -> Option<Rgb> {
+        self.integrator.background().filter(|_| !self.cover.holds(pixels))
+    }
+
     fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, found: &mut Found) {
-        self(rays, scratch, counts, found);
+        self.integrator.add_radiances(rays, &self.media, scratch, counts, found);
+    }
+}
+
+/// Paints c_a.
+struct OcclusionPainter<'w> {
+    integrator: Whitted<'w>,
+    cover: Cover,
+}
+
+impl Painter for OcclusionPainter<'_> {
+    type Tile = ();
+
+    fn begin_tile(&self) {}
+
+    const SIDE: u32 = BLOCK;
+
+    fn blank(&self, pixels: &Region) -> Option<Rgb> {
+        (!self.cover.holds(pixels)).then_some(Rgb::WHITE)
+    }
+
+    fn trace(&self, rays: &CameraRays, (): &mut (), counts: &mut RayCounts, found: &mut Found) {
+        for (found, occlusion) in found.iter_mut().zip(self.integrator.occlusions(rays, counts)) {
+            *found = Rgb::grey(occlusion);
+        }
     }
 }
 
@@ -302,9 +337,45 @@ impl<P: Painter> Job<'_, P> {
         kept: &mut P::Tile,
         counts: &mut RayCounts,
     ) -> Option<[[f32; 3]; RayPacket::LANES]> {
+        if self.is_stopped() {
+            return None;
+        }
+        let samples = self.frame.samples;
+        let area = self.in_image(place);
+        let Region { x, y, width, height } = area;
+        let mut sums = Found::default();
+        if let Some(radiance) = self.painter.blank(place) {
+            counts.primary += u64::from(width * height * samples * samples);
+            for _ in 0..samples * samples {
+                sums.iter_mut().for_each(|sum| *sum += radiance);
+            }
+        } else {
+            self.trace_block(&area, work, kept, counts)?;
+            for radiances in &work.radiances {
+                for (sum, radiance) in sums.iter_mut().zip(radiances) {
+                    *sum += *radiance;
+                }
+            }
+        }
+        let scale = 1.0 / f64::from(samples * samples);
+        let means = sums.map(|sum| (sum * scale).to_array().map(|channel| channel as f32));
+        let pixels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
+        for ((x, y), mean) in pixels.zip(means) {
+            self.painter.end_pixel(x, y, mean, kept);
+        }
+        Some(means)
+    }
+
+    /// Finds what each subpixel of a square of the image yields; none once the render is cancelled.
+    fn trace_block(
+        &self,
+        area: &Region,
+        Work { rays, radiances }: &mut Work,
+        kept: &mut P::Tile,
+        counts: &mut RayCounts,
+    ) -> Option<()> {
         let Frame { projection, samples, lines, .. } = &self.frame;
-        let Region { x, y, width, height } = self.in_image(place);
-        let Work { rays, radiances } = work;
+        let Region { x, y, width, height } = *area;
         radiances.resize((samples * samples) as usize, Found::default());
         // Rays of neighbouring subpixels go much the same way, so squares of them are traced together.
         for rows in lines[..(height * samples) as usize].chunks(P::SIDE as usize) {
@@ -321,24 +392,16 @@ impl<P: Painter> Job<'_, P> {
                     }
                 }
                 // Afterwards: what was cancelled on its way is unfinished.
-                if self.control.cancel.is_cancelled() || self.panic.get().is_some() {
+                if self.is_stopped() {
                     return None;
                 }
             }
         }
-        let mut sums = Found::default();
-        for radiances in radiances {
-            for (sum, radiance) in sums.iter_mut().zip(radiances) {
-                *sum += *radiance;
-            }
-        }
-        let scale = 1.0 / f64::from(samples * samples);
-        let means = sums.map(|sum| (sum * scale).to_array().map(|channel| channel as f32));
-        let pixels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
-        for ((x, y), mean) in pixels.zip(means) {
-            self.painter.end_pixel(x, y, mean, kept);
-        }
-        Some(means)
+        Some(())
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.control.cancel.is_cancelled() || self.panic.get().is_some()
     }
 }
 

@@ -4,6 +4,7 @@
 //! pixel is a function of the world, the camera and the settings alone.
 
 mod control;
+mod cover;
 mod driver;
 mod features;
 pub mod passes;

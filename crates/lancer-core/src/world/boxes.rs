@@ -4,7 +4,8 @@
 
 use super::geometry::TriangleIndex;
 use super::{ObjectId, ObjectIndex, World};
-use crate::accel::bvh::boxes_at;
+use crate::accel::Aabb;
+use crate::accel::bvh::{boxes_around_all, boxes_at};
 use crate::geometry::{Bounds, DVec3};
 
 impl World {
@@ -47,5 +48,33 @@ impl World {
         };
         let to_world = |corner| object.placement.point_to_world(corner);
         boxes.iter().map(|aabb| aabb.to_bounds().corners().map(to_world)).collect()
+    }
+
+    /// At most `most` boxes, which together hold all objects; none where an object has no bounds.
+    pub(crate) fn boxes_around_all(&self, most: usize) -> Option<Vec<[DVec3; 8]>> {
+        if !self.unbounded.is_empty() {
+            return None;
+        }
+        if self.bounded.len() > most / 2 {
+            let boxes = match &self.index {
+                ObjectIndex::Bvh(tree) => boxes_around_all(tree.nodes(), tree.bounds(), most),
+                ObjectIndex::Kd(_) | ObjectIndex::None => vec![Aabb::around(&self.bounds)],
+            };
+            return Some(boxes.iter().map(|aabb| aabb.to_bounds().corners()).collect());
+        }
+        let share = most / self.bounded.len().max(1);
+        let mut boxes = Vec::new();
+        for &id in &self.bounded {
+            let object = self.object(id);
+            let to_world = |corner| object.placement.point_to_world(corner);
+            match object.geometry.triangle_tree(&self.meshes) {
+                Some(tree) => {
+                    let of_tree = tree.boxes_around_all(share);
+                    boxes.extend(of_tree.iter().map(|aabb| aabb.to_bounds().corners().map(to_world)));
+                }
+                None => boxes.extend(self.object_corners(id)),
+            }
+        }
+        Some(boxes)
     }
 }

@@ -22,7 +22,7 @@ mod split;
 mod tests;
 mod validate;
 
-pub(crate) use boxes::boxes_at;
+pub(crate) use boxes::{boxes_around_all, boxes_at};
 pub(crate) use node::LEAF;
 pub use node::{Child, MAX_LEAF, WIDTH, WideNode};
 pub use validate::Defect;

@@ -22,7 +22,7 @@ pub(crate) use walk::walk;
 
 use super::Aabb;
 use super::bits;
-use super::bvh::{BuildError, Bvh, Child, Contents, Quality, WideNode, boxes_at};
+use super::bvh::{BuildError, Bvh, Child, Contents, Quality, WideNode, boxes_around_all, boxes_at};
 use super::tally::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::geometry::{Bounds, DirectionFan, Ray, RayPacket};
@@ -111,6 +111,11 @@ impl TriangleTree {
     /// The boxes `level` steps below the root's: at most `most`.
     pub(crate) fn boxes_at(&self, level: u32, most: usize) -> Vec<Aabb> {
         boxes_at(&self.nodes, Aabb::around(&self.bounds), level, most)
+    }
+
+    /// At most `most` boxes, which together hold all triangles.
+    pub(crate) fn boxes_around_all(&self, most: usize) -> Vec<Aabb> {
+        boxes_around_all(&self.nodes, Aabb::around(&self.bounds), most)
     }
 
     /// Nodes of the hierarchy.
