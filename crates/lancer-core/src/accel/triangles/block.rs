@@ -4,7 +4,7 @@
 //! are compared with bounds on their error, so that they are known to be true, known to be false, or left to the
 //! canonical test in `f64`.
 
-use super::lanes::{add, cross, dot, largest, load3, splat3, sub};
+use super::lanes::{add, at, cross, dot, largest, load3, splat3, sub};
 use super::ray::{NarrowRay, UNDERFLOW, UNIT_ROUNDOFF};
 use crate::accel::bvh::Child;
 use fearless_simd::f32x4;
@@ -92,14 +92,60 @@ impl<S: Simd> TestRays<f32x4<S>> {
     }
 }
 
-impl<V> TestRays<V> {
-    /// Tests rays against triangles, lane by lane, for hits with `s` in (0, `end`). Of the lanes, `present` count.
+/// What a test wants to know of triangles, one triangle a lane, or the same in all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TestTriangles<V> {
+    corner: [V; 3],
+    /// To the other two.
+    edges: [[V; 3]; 2],
+    /// The largest component of the edges, in size.
+    longest: V,
+    determinant_error: V,
+}
+
+impl<V> TestTriangles<V> {
     #[inline(always)]
-    pub(super) fn test<S: Simd>(&self, simd: S, [a, b, c]: [[V; 3]; 3], present: u32, end: V) -> Verdict<V>
+    pub(super) fn new<S: Simd>([a, b, c]: [[V; 3]; 3]) -> Self
     where
         V: SimdFloat<S, Element = f32>,
     {
-        let (e1, e2) = (sub(b, a), sub(c, a));
+        let edges = [sub(b, a), sub(c, a)];
+        let longest = largest(edges[0]).max(largest(edges[1]));
+        let determinant_error = longest * longest * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
+        Self { corner: a, edges, longest, determinant_error }
+    }
+}
+
+impl<S: Simd> TestTriangles<f32x4<S>> {
+    /// One of them, in all lanes.
+    #[inline(always)]
+    pub(super) fn splat<V>(&self, simd: S, lane: usize) -> TestTriangles<V>
+    where
+        V: SimdFloat<S, Element = f32>,
+    {
+        TestTriangles {
+            corner: splat3(simd, at(self.corner, lane)),
+            edges: [splat3(simd, at(self.edges[0], lane)), splat3(simd, at(self.edges[1], lane))],
+            longest: V::splat(simd, self.longest[lane]),
+            determinant_error: V::splat(simd, self.determinant_error[lane]),
+        }
+    }
+}
+
+impl<V> TestRays<V> {
+    /// Tests rays against triangles, lane by lane, for hits with `s` in (0, `end`). Of the lanes, `present` count.
+    #[inline(always)]
+    pub(super) fn test<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &TestTriangles<V>,
+        present: u32,
+        end: V,
+    ) -> Verdict<V>
+    where
+        V: SimdFloat<S, Element = f32>,
+    {
+        let &TestTriangles { corner: a, edges: [e1, e2], longest: edge, determinant_error } = triangles;
         let from_a = add(sub(self.origin, a), self.origin_rest);
         let p = cross(self.direction, e2);
         let q = cross(from_a, e1);
@@ -113,10 +159,9 @@ impl<V> TestRays<V> {
         // With S = |from_a|, E = the longer edge, both by their largest component, and e the error of the origin,
         // the errors are below 64 u S E + 8 e E of u and v, 64 u E^2 of the determinant, and E times the former of
         // the numerator. Derived in docs/how-it-works/kernels.md.
-        let edge = largest(e1).max(largest(e2));
         let reach = largest(from_a);
         let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + self.origin_error * 8.0) + UNDERFLOW;
-        let denominator_error = edge * edge * (64.0 * UNIT_ROUNDOFF) + UNDERFLOW;
+        let denominator_error = determinant_error;
         let numerator_error = error * edge + UNDERFLOW;
         let sum_error = error * 3.0 + denominator_error * 2.0;
         let rest = denominator - u - v;
@@ -176,7 +221,13 @@ impl Block {
         count: usize,
         end: f32,
     ) -> Verdict<f32x4<S>> {
+        ray.test(simd, &self.triangles(simd), (1 << count) - 1, f32x4::splat(simd, end))
+    }
+
+    /// Its triangles, ready to be tested.
+    #[inline(always)]
+    pub(super) fn triangles<S: Simd>(&self, simd: S) -> TestTriangles<f32x4<S>> {
         let corner = |c: usize| load3(simd, &self.corners[c]);
-        ray.test(simd, [corner(0), corner(1), corner(2)], (1 << count) - 1, f32x4::splat(simd, end))
+        TestTriangles::new([corner(0), corner(1), corner(2)])
     }
 }

@@ -26,6 +26,12 @@ pub(super) fn load3<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, v: &[V::Ar
     [V::load_array_ref(simd, &v[0]), V::load_array_ref(simd, &v[1]), V::load_array_ref(simd, &v[2])]
 }
 
+/// The vector in a lane.
+#[inline(always)]
+pub(super) fn at<S: Simd>([x, y, z]: [f32x4<S>; 3], lane: usize) -> [f32; 3] {
+    [x[lane], y[lane], z[lane]]
+}
+
 /// The largest component in size.
 #[inline(always)]
 pub(super) fn largest<S: Simd, V: SimdFloat<S>>([x, y, z]: [V; 3]) -> V {

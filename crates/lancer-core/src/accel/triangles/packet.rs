@@ -7,8 +7,8 @@
 //! Boulos, Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies" (2007), for packets.
 
 use super::TriangleTree;
-use super::block::{Block, TestRays, Verdict, blocks_of, place_of};
-use super::lanes::{load3, splat3};
+use super::block::{Block, TestRays, TestTriangles, Verdict, blocks_of, place_of};
+use super::lanes::load3;
 use super::nearby::{Nearby, Others};
 use super::ray::{Clipped, NarrowRay};
 use super::single::{self, add_leaf};
@@ -368,8 +368,7 @@ fn rays_that_meet<S: Simd>(
 fn test<S: Simd>(
     simd: S,
     packet: &NarrowPacket,
-    block: &Block,
-    triangle: usize,
+    triangle: &TestTriangles<f32x16<S>>,
     lanes: u32,
     end: &Lane,
 ) -> Verdict<f32x16<S>> {
@@ -379,9 +378,7 @@ fn test<S: Simd>(
         direction: load3(simd, &packet.direction),
         origin_error: f32x16::load_array_ref(simd, &packet.origin_error),
     };
-    let [a, b, c] = block.triangle(triangle);
-    let corners = [splat3(simd, a), splat3(simd, b), splat3(simd, c)];
-    rays.test(simd, corners, lanes, f32x16::load_array_ref(simd, end))
+    rays.test(simd, triangle, lanes, f32x16::load_array_ref(simd, end))
 }
 
 /// The nearest hits of the rays `wanted`, and which rays are left to be searched one by one.
@@ -435,8 +432,13 @@ impl<S: Simd> Visitor for NearestSearch<'_, S> {
         }
         for (block, count) in blocks_of(child) {
             let met = beam_meets_triangles(self.simd, &self.tree.blocks[block], beam, count);
+            if met == 0 {
+                continue;
+            }
+            let triangles = self.tree.blocks[block].triangles(self.simd);
             for triangle in bits(met) {
-                let verdict = test(self.simd, self.packet, &self.tree.blocks[block], triangle, lanes, end);
+                let ready = triangles.splat(self.simd, triangle);
+                let verdict = test(self.simd, self.packet, &ready, lanes, end);
                 if verdict.maybe != 0 {
                     self.nearby.add(self.simd, place_of(block, triangle), &verdict, end);
                 }
@@ -525,8 +527,14 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
         } else {
             for (block, count) in blocks_of(child) {
                 let block = &self.tree.blocks[block];
-                for triangle in bits(beam_meets_triangles(self.simd, block, beam, count)) {
-                    let verdict = test(self.simd, self.packet, block, triangle, lanes & !occluded, end);
+                let met = beam_meets_triangles(self.simd, block, beam, count);
+                if met == 0 {
+                    continue;
+                }
+                let triangles = block.triangles(self.simd);
+                for triangle in bits(met) {
+                    let ready = triangles.splat(self.simd, triangle);
+                    let verdict = test(self.simd, self.packet, &ready, lanes & !occluded, end);
                     occluded |= verdict.sure;
                     for lane in bits(verdict.maybe & !verdict.sure) {
                         if self.own[lane] == Some(block.ids[triangle]) {

@@ -10,7 +10,7 @@ use crate::accel::bits;
 use crate::accel::bvh::{Bvh, Child, LEAF, WIDTH, WideNode};
 use crate::accel::tally::Tally;
 use crate::accel::triangles::TriangleTree;
-use crate::accel::triangles::block::{BLOCK, Block, TestRays};
+use crate::accel::triangles::block::{BLOCK, Block, TestRays, TestTriangles};
 use crate::accel::triangles::lanes::{joined, splat3};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, mask32x8, u32x4, u32x8};
@@ -201,8 +201,9 @@ fn test<S: Simd>(
         direction: along(simd, fan, directions),
         origin_error: f32x16::splat(simd, fan.error),
     };
-    let corners = [corner(simd, blocks, 0), corner(simd, blocks, 1), corner(simd, blocks, 2)];
-    let verdict = rays.test(simd, corners, present, f32x16::splat(simd, fan.reach));
+    let triangles =
+        TestTriangles::new([corner(simd, blocks, 0), corner(simd, blocks, 1), corner(simd, blocks, 2)]);
+    let verdict = rays.test(simd, &triangles, present, f32x16::splat(simd, fan.reach));
     // The reach is rounded up, by less than a part in 10^5.
     let sure_end = fan.reach * (1.0 - 1e-5);
     let latest = (verdict.numerator + verdict.numerator_error) * (1.0 + 1e-6);
