@@ -17,6 +17,7 @@ const LANES: usize = RayPacket::LANES;
 pub(super) struct Lighting {
     looks: Looks,
     lights: Vec<Reach>,
+    incidences: Incidences,
     segments: RayPacket,
 }
 
@@ -37,8 +38,8 @@ struct Reach {
     lit: u32,
 }
 
-/// What is found for all lanes before each is looked at.
-#[derive(Default)]
+/// What is found of a light for all lanes before each is looked at.
+#[derive(Clone, Debug, Default)]
 struct Incidences {
     falloff: [f64; LANES],
     cosine: [f64; LANES],
@@ -58,7 +59,7 @@ impl Lighting {
         looks: &[Option<Look>; LANES],
         mut hidden: impl FnMut(&RayPacket, u32, &[Option<Face>; LANES]) -> u32,
     ) {
-        let Self { looks: lanes, lights: reaches, segments } = self;
+        let Self { looks: lanes, lights: reaches, incidences, segments } = self;
         reaches.resize_with(world.lights().len(), Reach::default);
         let mut open = 0;
         for (lane, look) in looks.iter().enumerate() {
@@ -73,9 +74,8 @@ impl Lighting {
             if open == 0_u32 || light.intensity.is_black() {
                 continue;
             }
-            let mut incidences = Incidences::default();
             dispatch!(world.level(), _simd => {
-                lanes.lit_by(light, rays, met, reach, &mut incidences, segments);
+                lanes.lit_by(light, rays, met, reach, incidences, segments);
             });
             let mut left = [None; LANES];
             for lane in bits(open) {

@@ -16,7 +16,9 @@ use crate::geometry::{Ray, RayPacket};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint};
-use crate::world::{Face, Hit, Interface, Intersection, Intersections, Look, Media, Touching, World};
+use crate::world::{
+    Face, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching, World,
+};
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -36,6 +38,7 @@ pub struct Whitted<'w> {
 pub struct Scratch {
     /// For each camera ray of a packet.
     pending: [VecDeque<PendingRay>; LANES],
+    packets: PacketScratch,
     met: Intersections,
     lighting: Lighting,
     bends: Bends,
@@ -151,10 +154,20 @@ impl<'w> Whitted<'w> {
         tally: &T,
         sums: &mut [Rgb; LANES],
     ) {
-        let Scratch { pending, met, lighting, bends } = scratch;
+        let Scratch { pending, packets, met, lighting, bends } = scratch;
         let next_id = [1; LANES];
-        let mut walk =
-            Walk { integrator: self, pending, met, lighting, bends, counts, listeners, tally, next_id };
+        let mut walk = Walk {
+            integrator: self,
+            pending,
+            packets,
+            met,
+            lighting,
+            bends,
+            counts,
+            listeners,
+            tally,
+            next_id,
+        };
         let mut radiances = [Rgb::BLACK; LANES];
         walk.run(rays, media, &mut radiances);
         for (sum, radiance) in sums.iter_mut().zip(radiances) {
@@ -171,7 +184,7 @@ impl<'w> Whitted<'w> {
     /// With the keys of [`Whitted::add_radiances`] they are the factors of the ambient terms that are found there.
     pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
         counts.primary += rays.count() as u64;
-        let hits = self.intersect(rays.packet(), rays.lanes(), &Uncounted);
+        let hits = self.intersect(rays.packet(), rays.lanes(), &mut PacketScratch::default(), &Uncounted);
         let mut met = Intersections::default();
         self.world.seen(rays.packet(), &hits, false, &mut met, &Uncounted);
         let mut occlusions = [1.0; LANES];
@@ -184,9 +197,15 @@ impl<'w> Whitted<'w> {
     }
 
     /// What each of the rays `wanted` hits.
-    fn intersect(&self, rays: &RayPacket, wanted: u32, tally: &impl Tally) -> [Option<Hit>; LANES] {
+    fn intersect(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        scratch: &mut PacketScratch,
+        tally: &impl Tally,
+    ) -> [Option<Hit>; LANES] {
         if wanted.count_ones() >= WORTH_A_PACKET {
-            return self.world.intersect_packet(rays, wanted);
+            return self.world.intersect_packet_with(rays, wanted, scratch);
         }
         let mut hits = [None; LANES];
         for lane in bits(wanted) {
@@ -201,10 +220,11 @@ impl<'w> Whitted<'w> {
         rays: &RayPacket,
         wanted: u32,
         left: &[Option<Face>; LANES],
+        scratch: &mut PacketScratch,
         tally: &impl Tally,
     ) -> u32 {
         if wanted.count_ones() >= WORTH_A_PACKET {
-            return self.world.occluded_packet(rays, wanted, left);
+            return self.world.occluded_packet_with(rays, wanted, left, scratch);
         }
         bits(wanted)
             .filter(|&lane| self.world.occluded_tallied(&rays.ray(lane), tally))
@@ -242,6 +262,7 @@ const WORTH_A_PACKET: u32 = 4;
 struct Walk<'a, 'w, L, T> {
     integrator: &'a Whitted<'w>,
     pending: &'a mut [VecDeque<PendingRay>; LANES],
+    packets: &'a mut PacketScratch,
     met: &'a mut Intersections,
     lighting: &'a mut Lighting,
     bends: &'a mut Bends,
@@ -317,7 +338,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         keys: &[Key; LANES],
         radiances: &mut [Rgb; LANES],
     ) {
-        let hits = self.integrator.intersect(rays, wanted, self.tally);
+        let hits = self.integrator.intersect(rays, wanted, self.packets, self.tally);
         let background = self.integrator.world.background();
         let mut met = 0;
         for lane in bits(wanted) {
@@ -412,13 +433,13 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
 
     /// Finds what each light adds to each surface.
     fn find_lighting(&mut self, rays: &RayPacket, looks: &[Option<Look>; LANES]) {
-        let Self { integrator, met, lighting, counts, tally, .. } = self;
+        let Self { integrator, packets, met, lighting, counts, tally, .. } = self;
         lighting.find(integrator.world, rays, met, looks, |segments, wanted, left| {
             if !integrator.shadows {
                 return 0;
             }
             counts.shadow += u64::from(wanted.count_ones());
-            integrator.occluded(segments, wanted, left, *tally)
+            integrator.occluded(segments, wanted, left, packets, *tally)
         });
     }
 

@@ -299,9 +299,10 @@ impl<P: Painter> Job<'_, P> {
             // After a panic what is kept and the counts are dropped with the tile.
             let trace = AssertUnwindSafe(|| self.block(&place, &mut work, &mut kept, &mut counts));
             match catch_unwind(trace) {
-                Ok(means) => {
+                Ok(painted) => {
+                    painted?;
                     let rows = (block.y..block.y + block.height).map(|y| y as usize);
-                    for (y, means) in rows.zip(means?.chunks(block.width as usize)) {
+                    for (y, means) in rows.zip(work.means.chunks(block.width as usize)) {
                         let start = y * area.width as usize + block.x as usize;
                         pixels[start..start + means.len()].copy_from_slice(means);
                     }
@@ -329,48 +330,41 @@ impl<P: Painter> Job<'_, P> {
         Region { x: place.x + self.frame.region.x, y: place.y + self.frame.region.y, ..*place }
     }
 
-    /// The pixels of a square of the region, in reading order; none once the render is cancelled.
+    /// Finds the means of the pixels of a square of the region; none once the render is cancelled.
     fn block(
         &self,
         place: &Region,
         work: &mut Work,
         kept: &mut P::Tile,
         counts: &mut RayCounts,
-    ) -> Option<[[f32; 3]; RayPacket::LANES]> {
+    ) -> Option<()> {
         if self.is_stopped() {
             return None;
         }
-        let samples = self.frame.samples;
+        let subpixels = self.frame.samples * self.frame.samples;
         let area = self.in_image(place);
         let Region { x, y, width, height } = area;
-        let mut sums = Found::default();
         if let Some(radiance) = self.painter.blank(place) {
-            counts.primary += u64::from(width * height * samples * samples);
-            for _ in 0..samples * samples {
-                sums.iter_mut().for_each(|sum| *sum += radiance);
-            }
+            counts.primary += u64::from(width * height * subpixels);
+            work.means.fill(mean(std::iter::repeat_n(radiance, subpixels as usize)));
         } else {
             self.trace_block(&area, work, kept, counts)?;
-            for radiances in &work.radiances {
-                for (sum, radiance) in sums.iter_mut().zip(radiances) {
-                    *sum += *radiance;
-                }
+            for (pixel, found) in work.means.iter_mut().enumerate() {
+                *found = mean(work.radiances.iter().map(|radiances| radiances[pixel]));
             }
         }
-        let scale = 1.0 / f64::from(samples * samples);
-        let means = sums.map(|sum| (sum * scale).to_array().map(|channel| channel as f32));
         let pixels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
-        for ((x, y), mean) in pixels.zip(means) {
+        for ((x, y), &mean) in pixels.zip(&work.means) {
             self.painter.end_pixel(x, y, mean, kept);
         }
-        Some(means)
+        Some(())
     }
 
     /// Finds what each subpixel of a square of the image yields; none once the render is cancelled.
     fn trace_block(
         &self,
         area: &Region,
-        Work { rays, radiances }: &mut Work,
+        Work { rays, radiances, .. }: &mut Work,
         kept: &mut P::Tile,
         counts: &mut RayCounts,
     ) -> Option<()> {
@@ -411,6 +405,15 @@ struct Work {
     rays: CameraRays,
     /// By subpixel, then by pixel of a block.
     radiances: Vec<Found>,
+    /// The means of the block in hand, by pixel in reading order.
+    means: [[f32; 3]; RayPacket::LANES],
+}
+
+/// The mean of some radiances, which are added in their order.
+fn mean(radiances: impl ExactSizeIterator<Item = Rgb>) -> [f32; 3] {
+    let scale = 1.0 / radiances.len() as f64;
+    let sum = radiances.fold(Rgb::BLACK, |sum, radiance| sum + radiance);
+    (sum * scale).to_array().map(|channel| channel as f32)
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {

@@ -123,6 +123,8 @@ pub(crate) struct Intersections {
     /// See [`Intersection::from_inside`].
     pub(crate) from_inside: [bool; LANES],
     hits: [Option<Hit>; LANES],
+    /// Memory for the rays in an object's space.
+    local: RayPacket,
 }
 
 impl Intersections {
@@ -172,16 +174,14 @@ impl Intersections {
         hits: &[Option<Hit>; LANES],
         with_uv: bool,
     ) {
-        let Self { surfaces, from_inside, .. } = self;
+        let Self { surfaces, from_inside, local, .. } = self;
         let with_uv = with_uv || world.material(object.material).color.wants_uv();
-        let mut local = RayPacket::default();
         dispatch!(world.level, _simd => {
-            object.placement.rays_to_object(rays, &mut local);
-            let rays = &local;
-            object.geometry.surfaces(rays, hits, &world.meshes, with_uv, surfaces);
+            object.placement.rays_to_object(rays, local);
+            object.geometry.surfaces(local, hits, &world.meshes, with_uv, surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {
                 let surface = surfaces.at(lane);
-                *from_inside = is_from_inside(&surface, &rays.ray(lane));
+                *from_inside = is_from_inside(&surface, &local.ray(lane));
                 surfaces.put(lane, &to_world(&object.placement, &surface));
             }
         });

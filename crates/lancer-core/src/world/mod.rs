@@ -32,6 +32,7 @@ pub use intersection::{Face, Intersection};
 pub(crate) use intersection::{Intersections, Look};
 pub use media::Media;
 pub(crate) use media::{Interface, Touching};
+pub(crate) use packet::PacketScratch;
 
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{NarrowRay, Narrowed, walk};

@@ -16,12 +16,23 @@ impl World {
     /// The nearest hits of the rays `wanted` of a packet, a bit for each: what [`World::intersect`] finds, found
     /// faster where the rays go much the same way.
     pub fn intersect_packet(&self, rays: &RayPacket, wanted: u32) -> [Option<Hit>; LANES] {
+        self.intersect_packet_with(rays, wanted, &mut PacketScratch::default())
+    }
+
+    /// The same, with memory from before.
+    pub(crate) fn intersect_packet_with(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        scratch: &mut PacketScratch,
+    ) -> [Option<Hit>; LANES] {
         let mut best: [Option<Hit>; LANES] = [None; LANES];
         // A hit at the same t is looked at too: the lower object is to win.
         let mut up_to = rays.t_max;
-        let mut local = Local::default();
-        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, t_max| {
-            let hits = object.intersect_packet(rays, &mut local, &up_to, lanes, self);
+        let PacketScratch { narrow, local } = scratch;
+        local.frame = None;
+        let visited = self.visit_objects_of_packet(rays, wanted, narrow, |id, object, lanes, t_max| {
+            let hits = object.intersect_packet(rays, local, &up_to, lanes, self);
             for lane in bits(lanes) {
                 let Some(shape::Hit { t, primitive }) = hits[lane] else { continue };
                 if best[lane].is_none_or(|best| (t, id) < (best.t, best.object)) {
@@ -42,11 +53,23 @@ impl World {
     /// rays start from, as [`Intersection::face_left_for`](super::Intersection::face_left_for) knows them: triangles
     /// among them need no test, which would be too close to tell.
     pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
+        self.occluded_packet_with(rays, wanted, left, &mut PacketScratch::default())
+    }
+
+    /// The same, with memory from before.
+    pub(crate) fn occluded_packet_with(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        left: &[Option<Face>; LANES],
+        scratch: &mut PacketScratch,
+    ) -> u32 {
         let mut occluded = 0;
-        let mut local = Local::default();
-        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
+        let PacketScratch { narrow, local } = scratch;
+        local.frame = None;
+        let visited = self.visit_objects_of_packet(rays, wanted, narrow, |id, object, lanes, _| {
             let own = left.map(|face| face.filter(|face| face.object == id).map(|face| face.primitive));
-            let hit = object.occluded_packet(rays, &mut local, lanes, &own, self);
+            let hit = object.occluded_packet(rays, local, lanes, &own, self);
             occluded |= hit;
             hit
         });
@@ -59,8 +82,8 @@ impl World {
     /// Which of the rays `wanted` of a packet may meet anything but the objects `excluded`, of which each ray has one.
     pub(super) fn may_meet_others(&self, rays: &RayPacket, wanted: u32, excluded: &[ObjectId; LANES]) -> u32 {
         let mut met = 0;
-        let mut local = Local::default();
-        let visited = self.visit_objects_of_packet(rays, wanted, |id, object, lanes, _| {
+        let PacketScratch { mut narrow, mut local } = PacketScratch::default();
+        let visited = self.visit_objects_of_packet(rays, wanted, &mut narrow, |id, object, lanes, _| {
             let others =
                 bits(lanes).filter(|&lane| excluded[lane] != id).fold(0, |set, lane| set | 1 << lane);
             if others != 0 {
@@ -78,6 +101,7 @@ impl World {
         &self,
         rays: &RayPacket,
         wanted: u32,
+        packet: &mut NarrowPacket,
         mut visit: impl FnMut(ObjectId, &Object, u32, &mut [f64; LANES]) -> u32,
     ) -> u32 {
         let ObjectIndex::Bvh(tree) = &self.index else { return 0 };
@@ -100,12 +124,12 @@ impl World {
         let rays = RayPacket { t_max, ..rays.clone() };
         let mut out_of_range = 0;
         dispatch!(self.level, simd => {
-            let mut packet = NarrowPacket::default();
             packet.prepare(&rays, &self.bounds);
             out_of_range = packet.out_of_range & left;
             let mut open = packet.ready & left;
             let objects = &self.bounded;
-            let mut visitor = Leaves { packet: &packet, visit: |leaf: Child, mut lanes, t_max: &mut [f64; LANES]| {
+            let packet = &*packet;
+            let mut visitor = Leaves { packet, visit: |leaf: Child, mut lanes, t_max: &mut [f64; LANES]| {
                 for &candidate in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
                     lanes &= visit(objects[candidate as usize], lanes, t_max);
                 }
@@ -113,7 +137,7 @@ impl World {
             }, t_max };
             while let Some((group, backward)) = packet.octant(simd, &mut open) {
                 let mut end = packet.ends_of(simd, group);
-                walk_packet(simd, tree.nodes(), &packet, group, backward, &mut end, &mut visitor);
+                walk_packet(simd, tree.nodes(), packet, group, backward, &mut end, &mut visitor);
             }
         });
         wanted & !out_of_range
@@ -141,8 +165,16 @@ impl<F: FnMut(Child, u32, &mut [f64; LANES]) -> u32> Visitor for Leaves<'_, F> {
     }
 }
 
+/// Memory that packets leave to the next: to fill it with zeros for each would take a hundredth of a picture's time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PacketScratch {
+    /// The rays in the world, ready for the tree over the objects.
+    narrow: NarrowPacket,
+    local: Local,
+}
+
 /// Rays in the space of the object that was looked at last.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 struct Local {
     /// The frame that they are ready for.
     frame: Option<u32>,
