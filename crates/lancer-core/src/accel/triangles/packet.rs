@@ -8,7 +8,7 @@
 
 use super::TriangleTree;
 use super::block::{Block, TestRays, TestTriangles, Verdict, blocks_of, place_of};
-use super::lanes::load3;
+use super::lanes::{load3, splat3};
 use super::nearby::{Nearby, Others};
 use super::ray::{Clipped, NarrowRay};
 use super::single::{self, add_leaf};
@@ -106,6 +106,18 @@ impl NarrowPacket {
             end,
             start: self.start[lane],
             scale: self.scale[lane],
+        }
+    }
+
+    /// What a test wants to know of one of the rays.
+    #[inline(always)]
+    fn test_ray<S: Simd>(&self, simd: S, lane: usize) -> TestRays<f32x4<S>> {
+        let of = |v: &[Lane; 3]| [v[0][lane], v[1][lane], v[2][lane]];
+        TestRays {
+            origin: splat3(simd, of(&self.origin)),
+            origin_rest: splat3(simd, of(&self.origin_rest)),
+            direction: splat3(simd, of(&self.direction)),
+            origin_error: f32x4::splat(simd, self.origin_error[lane]),
         }
     }
 
@@ -450,11 +462,16 @@ impl<S: Simd> Visitor for NearestSearch<'_, S> {
 impl<S: Simd> NearestSearch<'_, S> {
     #[inline(always)]
     fn go_alone(&mut self, child: Child, lane: usize, end: &mut f32) {
-        let ray = self.packet.ray(lane, *end);
-        let block_ray = TestRays::new(self.simd, &ray);
-        let (simd, nodes) = (self.simd, &self.tree.nodes);
-        let mut visitor = Alone { search: self, block_ray, lane, end };
-        walk_from(simd, nodes, child, &ray, &Uncounted, &mut visitor);
+        let Self { simd, tree, packet, .. } = *self;
+        let block_ray = packet.test_ray(simd, lane);
+        // A leaf, as most are, wants no more of the ray.
+        if child.is_leaf() {
+            Alone { search: self, block_ray, lane, end }.leaf(child);
+        } else {
+            let ray = packet.ray(lane, *end);
+            let mut visitor = Alone { search: self, block_ray, lane, end };
+            walk_from(simd, &tree.nodes, child, &ray, &Uncounted, &mut visitor);
+        }
     }
 }
 
@@ -519,9 +536,17 @@ impl<S: Simd> Visitor for OcclusionSearch<'_, S> {
         let mut occluded = 0;
         if few(child, lanes) {
             for lane in bits(lanes) {
-                let (narrow, ray) = (self.packet.ray(lane, end[lane]), self.rays.ray(lane));
-                let own = self.own[lane];
-                let hit = single::occluded(self.simd, self.tree, child, &ray, &narrow, own, &Uncounted);
+                let (ray, own) = (self.rays.ray(lane), self.own[lane]);
+                let hit = if child.is_leaf() {
+                    let block_ray = self.packet.test_ray(self.simd, lane);
+                    let canonical = &mut Canonical::new(&ray);
+                    single::leaf_occludes(
+                        self.simd, self.tree, child, &block_ray, end[lane], own, canonical, &Uncounted,
+                    )
+                } else {
+                    let narrow = self.packet.ray(lane, end[lane]);
+                    single::occluded(self.simd, self.tree, child, &ray, &narrow, own, &Uncounted)
+                };
                 occluded |= u32::from(hit) << lane;
             }
         } else {

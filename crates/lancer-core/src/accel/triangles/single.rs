@@ -4,6 +4,7 @@ use super::TriangleTree;
 use super::block::{TestRays, blocks_of, place_of};
 use super::ray::NarrowRay;
 use super::walk::{LeafVisitor, walk, walk_from};
+use crate::accel::bits;
 use crate::accel::bvh::Child;
 use crate::accel::tally::Tally;
 use crate::geometry::Ray;
@@ -168,21 +169,35 @@ struct OcclusionSearch<'a, S: Simd, T> {
 impl<S: Simd, T: Tally> LeafVisitor for OcclusionSearch<'_, S, T> {
     #[inline(always)]
     fn leaf(&mut self, leaf: Child) -> f32 {
-        for (index, count) in blocks_of(leaf) {
-            let block = &self.tree.blocks[index];
-            self.tally.triangles(count);
-            let verdict = block.test(self.simd, &self.block_ray, count, self.narrow.end);
-            let mut unsure = verdict.maybe;
-            self.found = verdict.sure != 0;
-            while unsure != 0 && !self.found {
-                let lane = unsure.trailing_zeros() as usize;
-                unsure &= unsure - 1;
-                self.found = self.own != Some(block.ids[lane]) && self.canonical.hits(&block.triangle(lane));
-            }
-            if self.found {
-                return -1.0;
-            }
-        }
-        self.narrow.end
+        let Self { simd, tree, own, .. } = *self;
+        let end = self.narrow.end;
+        self.found =
+            leaf_occludes(simd, tree, leaf, &self.block_ray, end, own, &mut self.canonical, self.tally);
+        if self.found { -1.0 } else { end }
     }
+}
+
+/// Whether a triangle of a leaf, other than the triangle `own`, is hit before `end`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the leaf, the ray, and who is told, each by its parts")]
+pub(super) fn leaf_occludes<S: Simd>(
+    simd: S,
+    tree: &TriangleTree,
+    leaf: Child,
+    ray: &TestRays<f32x4<S>>,
+    end: f32,
+    own: Option<u32>,
+    canonical: &mut Canonical,
+    tally: &impl Tally,
+) -> bool {
+    for (index, count) in blocks_of(leaf) {
+        let block = &tree.blocks[index];
+        tally.triangles(count);
+        let verdict = block.test(simd, ray, count, end);
+        let is_hit = |lane: usize| own != Some(block.ids[lane]) && canonical.hits(&block.triangle(lane));
+        if verdict.sure != 0 || bits(verdict.maybe).any(is_hit) {
+            return true;
+        }
+    }
+    false
 }
