@@ -36,6 +36,17 @@ impl DirectionFan {
         self.lowest + self.step * i as f64
     }
 
+    /// The directions whose product with a vector is negative, a bit for each.
+    #[inline(always)]
+    pub(crate) fn against(&self, vector: DVec3) -> u64 {
+        let [x, y, z] = &self.components;
+        let mut against = [false; Self::CAPACITY];
+        for i in 0..Self::CAPACITY {
+            against[i] = vector.x * x[i] + vector.y * y[i] + vector.z * z[i] < 0.0;
+        }
+        (0..Self::CAPACITY).fold(0, |set, i| set | u64::from(against[i]) << i) & self.all()
+    }
+
     /// A bit for each direction.
     pub fn all(&self) -> u64 {
         u64::MAX >> (Self::CAPACITY - self.count)

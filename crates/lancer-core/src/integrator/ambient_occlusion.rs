@@ -8,7 +8,7 @@ use crate::accel::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
-use crate::world::{Intersection, World};
+use crate::world::{FansScratch, Intersection, World};
 
 /// Estimates c_a at one point after another.
 #[derive(Clone, Debug)]
@@ -38,16 +38,17 @@ impl AmbientOcclusionSampler {
 
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
     pub fn factor(&self, world: &World, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
-        self.factor_tallied(world, at, key, counts, &Uncounted)
+        self.factor_with(world, at, key, counts, &mut FansScratch::default(), &Uncounted)
     }
 
-    /// As [`AmbientOcclusionSampler::factor`], and tells what the search looks at.
-    pub(super) fn factor_tallied(
+    /// As [`AmbientOcclusionSampler::factor`], with memory from before, and tells what the search looks at.
+    pub(super) fn factor_with(
         &self,
         world: &World,
         at: &Intersection,
         key: Key,
         counts: &mut RayCounts,
+        scratch: &mut FansScratch,
         tally: &impl Tally,
     ) -> f64 {
         if !self.is_wanted() {
@@ -59,7 +60,8 @@ impl AmbientOcclusionSampler {
                 break;
             }
             counts.ao += fan.count as u64;
-            let mut visible = fan.all() & !world.occluded_fan_tallied(at, &fan, self.distance, tally);
+            let occluded = world.occluded_fan_with(at, &fan, self.distance, scratch, tally);
+            let mut visible = fan.all() & !occluded;
             while visible != 0 {
                 sum += fan.elevation(visible.trailing_zeros() as usize);
                 visible &= visible - 1;

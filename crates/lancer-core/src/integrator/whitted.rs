@@ -17,7 +17,8 @@ use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint};
 use crate::world::{
-    Face, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching, World,
+    Face, FansScratch, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching,
+    World,
 };
 use std::collections::VecDeque;
 
@@ -42,6 +43,7 @@ pub struct Scratch {
     met: Intersections,
     lighting: Lighting,
     bends: Bends,
+    fans: FansScratch,
 }
 
 const LANES: usize = RayPacket::LANES;
@@ -154,7 +156,7 @@ impl<'w> Whitted<'w> {
         tally: &T,
         sums: &mut [Rgb; LANES],
     ) {
-        let Scratch { pending, packets, met, lighting, bends } = scratch;
+        let Scratch { pending, packets, met, lighting, bends, fans } = scratch;
         let next_id = [1; LANES];
         let mut walk = Walk {
             integrator: self,
@@ -163,6 +165,7 @@ impl<'w> Whitted<'w> {
             met,
             lighting,
             bends,
+            fans,
             counts,
             listeners,
             tally,
@@ -182,15 +185,21 @@ impl<'w> Whitted<'w> {
     /// c_a at the surfaces that camera rays meet; 1 where one meets none.
     ///
     /// With the keys of [`Whitted::add_radiances`] they are the factors of the ambient terms that are found there.
-    pub fn occlusions(&self, rays: &CameraRays, counts: &mut RayCounts) -> [f64; RayPacket::LANES] {
+    pub fn occlusions(
+        &self,
+        rays: &CameraRays,
+        scratch: &mut Scratch,
+        counts: &mut RayCounts,
+    ) -> [f64; RayPacket::LANES] {
         counts.primary += rays.count() as u64;
-        let hits = self.intersect(rays.packet(), rays.lanes(), &mut PacketScratch::default(), &Uncounted);
-        let mut met = Intersections::default();
-        self.world.seen(rays.packet(), &hits, false, &mut met, &Uncounted);
+        let Scratch { packets, met, fans, .. } = scratch;
+        let hits = self.intersect(rays.packet(), rays.lanes(), packets, &Uncounted);
+        self.world.seen(rays.packet(), &hits, false, met, &Uncounted);
         let mut occlusions = [1.0; LANES];
         for (lane, occlusion) in occlusions.iter_mut().enumerate() {
             if let Some(at) = met.at(self.world, lane) {
-                *occlusion = self.occlusion_at(&at, rays.keys()[lane], counts);
+                let key = rays.keys()[lane];
+                *occlusion = self.occlusion.factor_with(self.world, &at, key, counts, fans, &Uncounted);
             }
         }
         occlusions
@@ -266,6 +275,7 @@ struct Walk<'a, 'w, L, T> {
     met: &'a mut Intersections,
     lighting: &'a mut Lighting,
     bends: &'a mut Bends,
+    fans: &'a mut FansScratch,
     counts: &'a mut RayCounts,
     listeners: &'a mut [L],
     tally: &'a T,
@@ -425,7 +435,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         if let Some(at) = at {
             let Whitted { world, occlusion, .. } = self.integrator;
-            term.occlusion = occlusion.factor_tallied(world, at, key, self.counts, self.tally);
+            term.occlusion = occlusion.factor_with(world, at, key, self.counts, self.fans, self.tally);
         }
         self.listeners[lane].ambient(&term);
         term.radiance()

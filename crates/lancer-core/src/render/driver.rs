@@ -250,9 +250,11 @@ struct OcclusionPainter<'w> {
 }
 
 impl Painter for OcclusionPainter<'_> {
-    type Tile = ();
+    type Tile = Scratch;
 
-    fn begin_tile(&self) {}
+    fn begin_tile(&self) -> Scratch {
+        Scratch::default()
+    }
 
     const SIDE: u32 = BLOCK;
 
@@ -260,8 +262,8 @@ impl Painter for OcclusionPainter<'_> {
         (!self.cover.holds(pixels)).then_some(Rgb::WHITE)
     }
 
-    fn trace(&self, rays: &CameraRays, (): &mut (), counts: &mut RayCounts, found: &mut Found) {
-        for (found, occlusion) in found.iter_mut().zip(self.integrator.occlusions(rays, counts)) {
+    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, found: &mut Found) {
+        for (found, occlusion) in found.iter_mut().zip(self.integrator.occlusions(rays, scratch, counts)) {
             *found = Rgb::grey(occlusion);
         }
     }

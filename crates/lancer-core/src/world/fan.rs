@@ -2,10 +2,11 @@
 
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{Receiver, visit_fan};
+use crate::accel::triangles::{Fan, FanScratch, Receiver, visit_fan};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::{DMat3, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
+use fearless_simd::dispatch;
 
 /// An elevation that no rounding makes negative.
 const CLEARLY_ABOVE: f64 = 1e-9;
@@ -20,29 +21,26 @@ impl World {
     /// The answer for each direction is that of [`World::occluded`] for `at.spawn(direction)`; it is only found
     /// faster.
     pub fn occluded_fan(&self, at: &Intersection, fan: &DirectionFan, reach: f64) -> u64 {
-        self.occluded_fan_tallied(at, fan, reach, &Uncounted)
+        self.occluded_fan_with(at, fan, reach, &mut FansScratch::default(), &Uncounted)
     }
 
-    /// As [`World::occluded_fan`], and tells what it looks at.
-    pub(crate) fn occluded_fan_tallied(
+    /// As [`World::occluded_fan`], with memory from before, and tells what it looks at.
+    pub(crate) fn occluded_fan_with(
         &self,
         at: &Intersection,
         fan: &DirectionFan,
         reach: f64,
+        scratch: &mut FansScratch,
         tally: &impl Tally,
     ) -> u64 {
         let wanted = fan.all();
         let mut occluded = 0;
-        let mut together = 0;
-        if at.shading_normal == at.geometric_normal && fan.lowest > CLEARLY_ABOVE {
-            together = wanted;
-        } else {
+        let mut together = wanted;
+        if at.shading_normal != at.geometric_normal || fan.lowest <= CLEARLY_ABOVE {
             // An interpolated normal may have directions above it that go below the surface: their rays start on
             // the other side of it.
-            for i in 0..fan.count {
-                let beneath = at.geometric_normal.dot(fan.direction(i)) < 0.0;
-                together |= u64::from(beneath == at.from_inside) << i;
-            }
+            let beneath = dispatch!(self.level, _simd => fan.against(at.geometric_normal));
+            together = if at.from_inside { beneath } else { wanted & !beneath };
         }
         let by_objects = match &self.index {
             ObjectIndex::Bvh(_) => true,
@@ -59,16 +57,23 @@ impl World {
             let rays = FanRays { origin: at.spawn(fan.direction(first)).origin, fan, reach, at };
             let mut open = together;
             for &id in &self.unbounded {
-                open &= !self.occluded_by(id, &rays, open, tally);
+                open &= !self.occluded_by(id, &rays, open, &mut scratch.mesh, tally);
             }
-            open &= !self.occluded_by_bounded(&rays, open, tally);
+            open &= !self.occluded_by_bounded(&rays, open, scratch, tally);
             occluded |= together & !open;
         }
         occluded
     }
 
     /// Which of the rays `wanted` an object stops.
-    fn occluded_by(&self, id: ObjectId, rays: &FanRays, wanted: u64, tally: &impl Tally) -> u64 {
+    fn occluded_by(
+        &self,
+        id: ObjectId,
+        rays: &FanRays,
+        wanted: u64,
+        scratch: &mut FanScratch,
+        tally: &impl Tally,
+    ) -> u64 {
         if wanted == 0 {
             return 0;
         }
@@ -80,7 +85,7 @@ impl World {
             let decide = |i: usize, triangle: &[[f32; 3]; 3]| {
                 Canonical::new(&object.placement.ray_to_object(&rays.ray(i))).hits(triangle)
             };
-            if let Some(occluded) = tree.occluded_fan(&receiver, rays.fan, wanted, tally, decide) {
+            if let Some(occluded) = tree.occluded_fan(&receiver, rays.fan, wanted, scratch, tally, decide) {
                 return occluded;
             }
         }
@@ -93,7 +98,14 @@ impl World {
     }
 
     /// Which of the rays `wanted` a bounded object stops.
-    fn occluded_by_bounded(&self, rays: &FanRays, wanted: u64, tally: &impl Tally) -> u64 {
+    fn occluded_by_bounded(
+        &self,
+        rays: &FanRays,
+        wanted: u64,
+        scratch: &mut FansScratch,
+        tally: &impl Tally,
+    ) -> u64 {
+        let FansScratch { objects, mesh } = scratch;
         let mut open = wanted;
         let mut found = false;
         if let ObjectIndex::Bvh(tree) = &self.index
@@ -102,22 +114,38 @@ impl World {
             let visit = |leaf: Child, mask: u64| {
                 let mut hit = 0;
                 for &place in &tree.order()[leaf.first()..leaf.first() + leaf.count()] {
-                    hit |= self.occluded_by(self.bounded[place as usize], rays, mask & !hit, tally);
+                    hit |= self.occluded_by(self.bounded[place as usize], rays, mask & !hit, mesh, tally);
                 }
                 open &= !hit;
                 hit
             };
             let receiver = rays.in_world();
-            found =
-                visit_fan(self.level, tree.nodes(), &self.bounds, &receiver, rays.fan, wanted, tally, visit);
+            found = visit_fan(
+                self.level,
+                tree.nodes(),
+                &self.bounds,
+                &receiver,
+                rays.fan,
+                wanted,
+                objects,
+                tally,
+                visit,
+            );
         }
         if !found {
             for &id in &self.bounded {
-                open &= !self.occluded_by(id, rays, open, tally);
+                open &= !self.occluded_by(id, rays, open, mesh, tally);
             }
         }
         wanted & !open
     }
+}
+
+/// Memory that fans leave to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FansScratch {
+    objects: Fan,
+    mesh: FanScratch,
 }
 
 /// A fan where it starts.

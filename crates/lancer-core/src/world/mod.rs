@@ -28,6 +28,7 @@ mod tests;
 
 pub use compile::{CompileControl, CompileOptions};
 pub use error::CompileError;
+pub(crate) use fan::FansScratch;
 pub use intersection::{Face, Intersection};
 pub(crate) use intersection::{Intersections, Look};
 pub use media::Media;

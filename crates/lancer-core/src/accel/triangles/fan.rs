@@ -58,7 +58,8 @@ impl Receiver {
 const LEAST_REACH: f64 = 1e-12;
 
 /// The fan in `f32`, ready for a walk.
-struct Fan {
+#[derive(Clone, Debug)]
+pub(crate) struct Fan {
     direction: [[f32; FAN]; 3],
     inverse: [[f32; FAN]; 3],
     /// As those of a [`super::ray::NarrowRay`].
@@ -75,71 +76,93 @@ struct Fan {
     own: u32,
 }
 
+impl Default for Fan {
+    fn default() -> Self {
+        Self {
+            direction: [[0.0; FAN]; 3],
+            inverse: [[0.0; FAN]; 3],
+            enter_offset: [[0.0; FAN]; 3],
+            leave_offset: [[0.0; FAN]; 3],
+            point: [0.0; 3],
+            point_rest: [0.0; 3],
+            error: 0.0,
+            normal: [0.0; 3],
+            reach: 0.0,
+            lowest: 0.0,
+            per_step: 0.0,
+            own: u32::MAX,
+        }
+    }
+}
+
 impl Fan {
+    /// Makes a fan ready for what lies within `bounds`, in place of what was there.
     #[inline(always)]
-    fn new(receiver: &Receiver, directions: &DirectionFan, bounds: &Bounds) -> Self {
+    fn prepare(&mut self, receiver: &Receiver, directions: &DirectionFan, bounds: &Bounds) {
         let point = receiver.point;
         let size = size_of(bounds).max(point.abs().max_element());
         let error = size * (1024.0 * f64::EPSILON);
         let narrow = narrowed(point);
         let margin = 24.0 * UNIT_ROUNDOFF * size as f32 + error as f32;
-        let mut direction = [[0.0; FAN]; 3];
-        let mut inverse = [[0.0; FAN]; 3];
-        let mut enter_offset = [[0.0; FAN]; 3];
-        let mut leave_offset = [[0.0; FAN]; 3];
         let columns = receiver.from_world.to_cols_array();
         let [x, y, z] = &directions.components;
         let used = directions.count.next_multiple_of(LANES);
         for axis in 0..3 {
             let (a, b, c) = (columns[axis], columns[3 + axis], columns[6 + axis]);
             for i in 0..used {
-                direction[axis][i] = (a * x[i] + b * y[i] + c * z[i]) as f32;
+                self.direction[axis][i] = (a * x[i] + b * y[i] + c * z[i]) as f32;
             }
             for i in 0..used {
-                let component = direction[axis][i];
-                inverse[axis][i] = 1.0 / component.abs().max(LEAST_COMPONENT as f32).copysign(component);
+                let component = self.direction[axis][i];
+                self.inverse[axis][i] = 1.0 / component.abs().max(LEAST_COMPONENT as f32).copysign(component);
             }
             for i in 0..used {
-                let base = -narrow[axis] * inverse[axis][i];
-                let slack = margin * inverse[axis][i].abs();
-                enter_offset[axis][i] = base - slack;
-                leave_offset[axis][i] = base + slack;
+                let inverse = self.inverse[axis][i];
+                let base = -narrow[axis] * inverse;
+                let slack = margin * inverse.abs();
+                self.enter_offset[axis][i] = base - slack;
+                self.leave_offset[axis][i] = base + slack;
             }
         }
-        Self {
-            direction,
-            inverse,
-            enter_offset,
-            leave_offset,
-            point: narrow,
-            point_rest: narrowed(point - widened(narrow)),
-            error: error as f32,
-            normal: narrowed(receiver.normal),
-            reach: (receiver.reach.min(1e3 * size) * (1.0 + 1e-6)) as f32,
-            lowest: directions.lowest as f32,
-            per_step: (1.0 / directions.step) as f32,
-            own: receiver.own.unwrap_or(u32::MAX),
-        }
+        self.point = narrow;
+        self.point_rest = narrowed(point - widened(narrow));
+        self.error = error as f32;
+        self.normal = narrowed(receiver.normal);
+        self.reach = (receiver.reach.min(1e3 * size) * (1.0 + 1e-6)) as f32;
+        self.lowest = directions.lowest as f32;
+        self.per_step = (1.0 / directions.step) as f32;
+        self.own = receiver.own.unwrap_or(u32::MAX);
     }
+}
+
+/// Memory that fans leave to the next: to fill it anew for each would take some hundredths of their time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FanScratch {
+    fan: Fan,
+    pairs: Pairs,
 }
 
 /// Which of the directions `wanted` meet a triangle of `tree`.
 ///
 /// `decide` is the canonical test of a direction and a triangle, for what is too close to tell.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the tree, the fan, and who is told, each by its parts")]
 pub(super) fn occluded<S: Simd>(
     simd: S,
     tree: &TriangleTree,
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    scratch: &mut FanScratch,
     tally: &impl Tally,
     mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> u64 {
-    let fan = &Fan::new(receiver, directions, &tree.bounds);
+    let FanScratch { fan, pairs: few } = scratch;
+    fan.prepare(receiver, directions, &tree.bounds);
+    few.clear();
+    let fan = &*fan;
     let mut open = wanted;
     let mut stack = ArrayVec::<Waiting, STACK>::new();
-    let mut few = Pairs::EMPTY;
     stack.push(Waiting { child: Child::inner(0), mask: wanted, distance: 0.0 });
     while let Some(Waiting { child, mask, .. }) = stack.pop() {
         let mask = mask & open;
@@ -178,10 +201,12 @@ pub(super) fn leaves<S: Simd>(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    fan: &mut Fan,
     tally: &impl Tally,
     visit: &mut impl FnMut(Child, u64) -> u64,
 ) {
-    let fan = &Fan::new(receiver, directions, bounds);
+    fan.prepare(receiver, directions, bounds);
+    let fan = &*fan;
     let mut open = wanted;
     let mut stack = ArrayVec::<Waiting, STACK>::new();
     stack.push(Waiting { child: Child::inner(0), mask: wanted, distance: 0.0 });

@@ -15,7 +15,7 @@ mod single;
 mod tests;
 mod walk;
 
-pub(crate) use fan::Receiver;
+pub(crate) use fan::{Fan, FanScratch, Receiver};
 pub(crate) use packet::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
@@ -44,13 +44,14 @@ pub(crate) fn visit_fan(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
+    scratch: &mut Fan,
     tally: &impl Tally,
     mut visit: impl FnMut(Child, u64) -> u64,
 ) -> bool {
     let fits = receiver.fits(bounds);
     if fits {
         dispatch!(level, simd => {
-            fan::leaves(simd, nodes, bounds, receiver, directions, wanted, tally, &mut visit);
+            fan::leaves(simd, nodes, bounds, receiver, directions, wanted, scratch, tally, &mut visit);
         });
     }
     fits
@@ -188,12 +189,13 @@ impl TriangleTree {
         receiver: &Receiver,
         directions: &DirectionFan,
         wanted: u64,
+        scratch: &mut FanScratch,
         tally: &impl Tally,
         mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> Option<u64> {
         receiver.fits(&self.bounds).then(|| {
             dispatch!(self.level, simd => {
-                fan::occluded(simd, self, receiver, directions, wanted, tally, &mut decide)
+                fan::occluded(simd, self, receiver, directions, wanted, scratch, tally, &mut decide)
             })
         })
     }

@@ -266,7 +266,9 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
                 };
                 let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: reach };
                 let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
-                let found = tree.occluded_fan(&receiver, &fan, fan.all(), &Uncounted, decide).unwrap();
+                let found = tree
+                    .occluded_fan(&receiver, &fan, fan.all(), &mut FanScratch::default(), &Uncounted, decide)
+                    .unwrap();
                 for i in 0..fan.count {
                     let ray = ray(i);
                     let mut canonical = Canonical::new(&ray);
@@ -294,7 +296,9 @@ fn the_few_directions_that_meet_a_crowd_of_boxes_find_what_rays_do() {
             let receiver = Receiver { point, normal, from_world, reach: 10.0, own: None };
             let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: 10.0 };
             let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
-            let found = tree.occluded_fan(&receiver, &fan, fan.all(), &Uncounted, decide).unwrap();
+            let found = tree
+                .occluded_fan(&receiver, &fan, fan.all(), &mut FanScratch::default(), &Uncounted, decide)
+                .unwrap();
             for i in 0..fan.count {
                 let expected = tree.occluded(&ray(i), &Uncounted);
                 assert_eq!(found >> i & 1 == 1, expected, "{level:?} {:?}", ray(i));

@@ -30,6 +30,7 @@ const DEEPEST: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1);
 const TOGETHER: usize = 4;
 
 /// Pairs of a direction and a node or a leaf that it may meet. The last [`WIDTH`] places are kept free.
+#[derive(Clone, Debug)]
 struct List<const ROOM: usize> {
     /// As [`WideNode::words`].
     children: [u32; ROOM],
@@ -65,6 +66,7 @@ impl<const ROOM: usize> List<ROOM> {
 }
 
 /// The pairs of a fan that wait for their turn.
+#[derive(Clone, Debug)]
 pub(super) struct Pairs {
     nodes: List<{ WAITING + DEEPEST + WIDTH }>,
     leaves: List<{ (BATCH + 1) * WIDTH }>,
@@ -72,12 +74,18 @@ pub(super) struct Pairs {
     tests: [Test; 2 * (BATCH + 1) * WIDTH],
 }
 
+impl Default for Pairs {
+    fn default() -> Self {
+        let none = Test { block: 0, count: 0, direction: 0 };
+        Self { nodes: List::EMPTY, leaves: List::EMPTY, tests: [none; 2 * (BATCH + 1) * WIDTH] }
+    }
+}
+
 impl Pairs {
-    pub(super) const EMPTY: Self = Self {
-        nodes: List::EMPTY,
-        leaves: List::EMPTY,
-        tests: [Test { block: 0, count: 0, direction: 0 }; 2 * (BATCH + 1) * WIDTH],
-    };
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        (self.nodes.count, self.leaves.count) = (0, 0);
+    }
 
     /// Adds the directions set in `mask`, at most [`ALONE`], with a node. Says whether there are enough to follow.
     #[inline(always)]
@@ -158,7 +166,7 @@ impl Pairs {
 }
 
 /// A direction, and a block of triangles that it may meet.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Test {
     block: u32,
     count: u8,
