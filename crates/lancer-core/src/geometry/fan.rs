@@ -14,8 +14,15 @@ pub struct DirectionFan {
     pub lowest: f64,
     /// How much higher each stands than the one before.
     pub step: f64,
-    /// How many there are, at least 1.
+    /// How many there are.
     pub count: usize,
+}
+
+impl Default for DirectionFan {
+    /// No directions.
+    fn default() -> Self {
+        Self { components: [[0.0; Self::CAPACITY]; 3], lowest: 0.0, step: 0.0, count: 0 }
+    }
 }
 
 impl DirectionFan {
@@ -49,6 +56,6 @@ impl DirectionFan {
 
     /// A bit for each direction.
     pub fn all(&self) -> u64 {
-        u64::MAX >> (Self::CAPACITY - self.count)
+        if self.count == 0 { 0 } else { u64::MAX >> (Self::CAPACITY - self.count) }
     }
 }

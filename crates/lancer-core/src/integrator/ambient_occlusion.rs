@@ -4,11 +4,19 @@
 //! is 1. Half of the directions have no weight and are not traced.
 
 use super::RayCounts;
-use crate::accel::{Tally, Uncounted};
+use crate::accel::{Tally, Uncounted, bits};
 use crate::cancel::CancelToken;
+use crate::geometry::DirectionFan;
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
 use crate::world::{FansScratch, Intersection, World};
+
+/// Memory that points leave to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OcclusionScratch {
+    directions: DirectionFan,
+    fans: FansScratch,
+}
 
 /// Estimates c_a at one point after another.
 #[derive(Clone, Debug)]
@@ -38,7 +46,7 @@ impl AmbientOcclusionSampler {
 
     /// c_a at a point; 1 where N is 0. It may exceed 1, since it is not clamped.
     pub fn factor(&self, world: &World, at: &Intersection, key: Key, counts: &mut RayCounts) -> f64 {
-        self.factor_with(world, at, key, counts, &mut FansScratch::default(), &Uncounted)
+        self.factor_with(world, at, key, counts, &mut OcclusionScratch::default(), &Uncounted)
     }
 
     /// As [`AmbientOcclusionSampler::factor`], with memory from before, and tells what the search looks at.
@@ -48,25 +56,24 @@ impl AmbientOcclusionSampler {
         at: &Intersection,
         key: Key,
         counts: &mut RayCounts,
-        scratch: &mut FansScratch,
+        scratch: &mut OcclusionScratch,
         tally: &impl Tally,
     ) -> f64 {
         if !self.is_wanted() {
             return 1.0;
         }
+        let OcclusionScratch { directions, fans } = scratch;
         let mut sum = 0.0;
-        for fan in self.lattice.around(at.facing_normal(), &mut key.stream()) {
+        self.lattice.visit_around(at.facing_normal(), &mut key.stream(), directions, |fan| {
             if self.cancel.is_cancelled() {
-                break;
+                return;
             }
             counts.ao += fan.count as u64;
-            let occluded = world.occluded_fan_with(at, &fan, self.distance, scratch, tally);
-            let mut visible = fan.all() & !occluded;
-            while visible != 0 {
-                sum += fan.elevation(visible.trailing_zeros() as usize);
-                visible &= visible - 1;
+            let occluded = world.occluded_fan_with(at, fan, self.distance, fans, tally);
+            for visible in bits(fan.all() & !occluded) {
+                sum += fan.elevation(visible);
             }
-        }
+        });
         4.0 * sum / f64::from(self.lattice.samples())
     }
 }

@@ -6,6 +6,7 @@
 //!
 //! Source: Whitted, "An improved illumination model for shaded display" (CACM 23(6), 1980).
 
+use super::ambient_occlusion::OcclusionScratch;
 use super::bends::{Bends, Indices};
 use super::lighting::Lighting;
 use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
@@ -17,8 +18,7 @@ use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint};
 use crate::world::{
-    Face, FansScratch, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching,
-    World,
+    Face, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching, World,
 };
 use std::collections::VecDeque;
 
@@ -43,7 +43,7 @@ pub struct Scratch {
     met: Intersections,
     lighting: Lighting,
     bends: Bends,
-    fans: FansScratch,
+    ambient: OcclusionScratch,
 }
 
 const LANES: usize = RayPacket::LANES;
@@ -156,7 +156,7 @@ impl<'w> Whitted<'w> {
         tally: &T,
         sums: &mut [Rgb; LANES],
     ) {
-        let Scratch { pending, packets, met, lighting, bends, fans } = scratch;
+        let Scratch { pending, packets, met, lighting, bends, ambient } = scratch;
         let next_id = [1; LANES];
         let mut walk = Walk {
             integrator: self,
@@ -165,7 +165,7 @@ impl<'w> Whitted<'w> {
             met,
             lighting,
             bends,
-            fans,
+            ambient,
             counts,
             listeners,
             tally,
@@ -192,14 +192,14 @@ impl<'w> Whitted<'w> {
         counts: &mut RayCounts,
     ) -> [f64; RayPacket::LANES] {
         counts.primary += rays.count() as u64;
-        let Scratch { packets, met, fans, .. } = scratch;
+        let Scratch { packets, met, ambient, .. } = scratch;
         let hits = self.intersect(rays.packet(), rays.lanes(), packets, &Uncounted);
         self.world.seen(rays.packet(), &hits, false, met, &Uncounted);
         let mut occlusions = [1.0; LANES];
         for (lane, occlusion) in occlusions.iter_mut().enumerate() {
             if let Some(at) = met.at(self.world, lane) {
                 let key = rays.keys()[lane];
-                *occlusion = self.occlusion.factor_with(self.world, &at, key, counts, fans, &Uncounted);
+                *occlusion = self.occlusion.factor_with(self.world, &at, key, counts, ambient, &Uncounted);
             }
         }
         occlusions
@@ -275,7 +275,7 @@ struct Walk<'a, 'w, L, T> {
     met: &'a mut Intersections,
     lighting: &'a mut Lighting,
     bends: &'a mut Bends,
-    fans: &'a mut FansScratch,
+    ambient: &'a mut OcclusionScratch,
     counts: &'a mut RayCounts,
     listeners: &'a mut [L],
     tally: &'a T,
@@ -435,7 +435,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         if let Some(at) = at {
             let Whitted { world, occlusion, .. } = self.integrator;
-            term.occlusion = occlusion.factor_with(world, at, key, self.counts, self.fans, self.tally);
+            term.occlusion = occlusion.factor_with(world, at, key, self.counts, self.ambient, self.tally);
         }
         self.listeners[lane].ambient(&term);
         term.radiance()

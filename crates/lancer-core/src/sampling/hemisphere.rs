@@ -53,10 +53,26 @@ impl HemisphereLattice {
         stream: &mut Stream,
     ) -> impl Iterator<Item = DirectionFan> + use<'a> {
         let shift = Shift::new(self, normal, stream);
-        let above = shift.above();
-        (0..above)
-            .step_by(DirectionFan::CAPACITY)
-            .map(move |first| shift.fan(above - first, DirectionFan::CAPACITY.min(above - first)))
+        shift.ends().map(move |end| {
+            let mut fan = DirectionFan::default();
+            shift.fill(&mut fan, end);
+            fan
+        })
+    }
+
+    /// Shows the same fans, in memory from before.
+    pub(crate) fn visit_around(
+        &self,
+        normal: DVec3,
+        stream: &mut Stream,
+        fan: &mut DirectionFan,
+        mut visit: impl FnMut(&DirectionFan),
+    ) {
+        let shift = Shift::new(self, normal, stream);
+        for end in shift.ends() {
+            shift.fill(fan, end);
+            visit(fan);
+        }
     }
 }
 
@@ -97,24 +113,30 @@ impl<'a> Shift<'a> {
         count
     }
 
-    /// `count` directions, from the one before number `end` of the lattice upward.
-    fn fan(&self, end: usize, count: usize) -> DirectionFan {
-        let mut fan = DirectionFan {
-            components: [[0.0; DirectionFan::CAPACITY]; 3],
-            lowest: self.elevation(end - 1),
-            step: self.step,
-            count,
-        };
+    /// Where fans end that hold all of these together, the lowest fan's first.
+    fn ends(&self) -> impl Iterator<Item = usize> + use<> {
+        let above = self.above();
+        (0..above).step_by(DirectionFan::CAPACITY).map(move |first| above - first)
+    }
+
+    /// Fills a fan with directions from the one before number `end` of the lattice upward.
+    fn fill(&self, fan: &mut DirectionFan, end: usize) {
+        let count = end.min(DirectionFan::CAPACITY);
+        (fan.lowest, fan.step, fan.count) = (self.elevation(end - 1), self.step, count);
         let [tangent, bitangent, normal] = self.frame;
         let [turn_cos, turn_sin] = self.turn;
         let [xs, ys, zs] = &mut fan.components;
         let first = self.lattice.cosines.len() - end;
         let cosines = &self.lattice.cosines[first..first + count];
         let sines = &self.lattice.sines[first..first + count];
+        for axis in [&mut *xs, ys, zs] {
+            axis[count..].fill(0.0);
+        }
         let (xs, ys, zs) = (&mut xs[..count], &mut ys[..count], &mut zs[..count]);
+        let lowest = fan.lowest;
         dispatch!(self.lattice.level, _simd => {
             for i in 0..count {
-                let elevation = fan.lowest + self.step * i as f64;
+                let elevation = lowest + self.step * i as f64;
                 let radius = (1.0 - elevation * elevation).max(0.0).sqrt();
                 let across = radius * (cosines[i] * turn_cos - sines[i] * turn_sin);
                 let along = radius * (sines[i] * turn_cos + cosines[i] * turn_sin);
@@ -123,7 +145,6 @@ impl<'a> Shift<'a> {
                 zs[i] = tangent.z * across + bitangent.z * along + normal.z * elevation;
             }
         });
-        fan
     }
 }
 
