@@ -32,6 +32,9 @@ const LANES: usize = 16;
 /// more than sixteen directions for one box, most of them idle.
 const ALONE: u32 = 12;
 
+/// Where so many directions or fewer meet a leaf, each is held against its triangles by itself.
+const APART: u32 = 4;
+
 /// A point to look around from, in the space of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Receiver {
@@ -169,7 +172,11 @@ pub(super) fn occluded<S: Simd>(
         if mask == 0 {
             continue;
         }
-        if child.is_leaf() {
+        if child.is_leaf() && mask.count_ones() <= APART {
+            if few.add_leaf(child, mask) {
+                open &= !few.test_leaves(simd, tree, fan, 0, tally, &mut decide);
+            }
+        } else if child.is_leaf() {
             for (block, count) in blocks_of(child) {
                 tally.triangles(count);
                 open &= !block_of_fan(simd, fan, &tree.blocks[block], count, mask & open, &mut decide);

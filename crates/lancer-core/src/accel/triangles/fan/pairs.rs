@@ -5,7 +5,7 @@
 //! predicts: leaf or node, how many children, whether it ends. So pairs of a direction and a node are kept in a list
 //! and worked off in batches, without such branches; what they meet goes to the ends of two lists, of nodes and leaves.
 
-use super::{ALONE, FAN, Fan};
+use super::{ALONE, APART, FAN, Fan};
 use crate::accel::bits;
 use crate::accel::bvh::{Bvh, Child, LEAF, WIDTH, WideNode};
 use crate::accel::tally::Tally;
@@ -25,6 +25,9 @@ const ENOUGH: usize = 6;
 /// Nodes that may wait before they are taken one by one, which is depth first: no more than [`DEEPEST`] then join them.
 const WAITING: usize = ENOUGH + ALONE as usize + 2 * BATCH * (WIDTH - 1);
 const DEEPEST: usize = (WIDTH - 1) * (Bvh::MAX_DEPTH as usize + 1);
+
+/// Leaves that may wait: those of a batch, and those that are added before it.
+const LEAVES: usize = BATCH * WIDTH + BATCH + APART as usize;
 
 /// Blocks of triangles that are tested at once, each with its direction.
 const TOGETHER: usize = 4;
@@ -69,15 +72,15 @@ impl<const ROOM: usize> List<ROOM> {
 #[derive(Clone, Debug)]
 pub(super) struct Pairs {
     nodes: List<{ WAITING + DEEPEST + WIDTH }>,
-    leaves: List<{ (BATCH + 1) * WIDTH }>,
+    leaves: List<{ LEAVES + WIDTH }>,
     /// One for each block of the leaves: no more than two for each.
-    tests: [Test; 2 * (BATCH + 1) * WIDTH],
+    tests: [Test; 2 * LEAVES],
 }
 
 impl Default for Pairs {
     fn default() -> Self {
         let none = Test { block: 0, count: 0, direction: 0 };
-        Self { nodes: List::EMPTY, leaves: List::EMPTY, tests: [none; 2 * (BATCH + 1) * WIDTH] }
+        Self { nodes: List::EMPTY, leaves: List::EMPTY, tests: [none; 2 * LEAVES] }
     }
 }
 
@@ -98,6 +101,17 @@ impl Pairs {
         self.nodes.count >= ENOUGH
     }
 
+    /// Adds the directions set in `mask`, at most [`APART`], with a leaf. Says whether there are enough to be tested.
+    #[inline(always)]
+    pub(super) fn add_leaf(&mut self, leaf: Child, mask: u64) -> bool {
+        for direction in bits(mask) {
+            self.leaves.children[self.leaves.count] = leaf.word();
+            self.leaves.directions[self.leaves.count] = direction as u32;
+            self.leaves.count += 1;
+        }
+        self.leaves.count >= BATCH
+    }
+
     /// Follows all to their ends. Returns the directions that meet a triangle.
     #[inline(always)]
     pub(super) fn follow<S: Simd>(
@@ -109,7 +123,7 @@ impl Pairs {
         decide: &mut impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> u64 {
         let mut hit = 0;
-        while self.nodes.count > 0 {
+        while self.nodes.count + self.leaves.count > 0 {
             let room = WAITING.saturating_sub(self.nodes.count) / (WIDTH - 1);
             let count = self.nodes.count.min(room.clamp(1, BATCH));
             self.nodes.count -= count;
@@ -138,7 +152,7 @@ impl Pairs {
 
     /// Tests the leaves that wait, and adds to those that `hit` a triangle the directions that do.
     #[inline(always)]
-    fn test_leaves<S: Simd>(
+    pub(super) fn test_leaves<S: Simd>(
         &mut self,
         simd: S,
         tree: &TriangleTree,
