@@ -4,11 +4,13 @@
 //! is, no ray need be traced.
 
 use super::Region;
+use super::driver::BLOCK;
 use crate::camera::Projection;
 use crate::geometry::DVec3;
 use crate::world::World;
 
-/// A grid over a region of an image, of squares that boxes around what is in the world cover, or not.
+/// A grid over a region of an image, of squares of [`BLOCK`] pixels by as many, that boxes around what is in the world
+/// cover, or not.
 #[derive(Clone, Debug)]
 pub(super) struct Cover {
     columns: usize,
@@ -16,9 +18,6 @@ pub(super) struct Cover {
     /// Row by row.
     covered: Vec<bool>,
 }
-
-/// The side of a square in pixels.
-const SIDE: u32 = 4;
 
 /// Boxes to look at: more would leave fewer squares covered in vain, but take longer; these take a fifth of a
 /// millisecond.
@@ -29,7 +28,7 @@ const MARGIN: f64 = 0.01;
 
 impl Cover {
     pub(super) fn new(world: &World, projection: &Projection, region: &Region) -> Self {
-        let [columns, rows] = [region.width, region.height].map(|length| length.div_ceil(SIDE) as usize);
+        let [columns, rows] = [region.width, region.height].map(|length| length.div_ceil(BLOCK) as usize);
         let mut cover = Self { columns, rows, covered: vec![false; columns * rows] };
         if cover.add_all(world, projection, region).is_none() {
             cover.covered.fill(true);
@@ -40,18 +39,18 @@ impl Cover {
     /// Whether anything may be seen in some pixels of the region.
     pub(super) fn holds(&self, pixels: &Region) -> bool {
         let squares =
-            |start: u32, length: u32| (start / SIDE) as usize..(start + length).div_ceil(SIDE) as usize;
+            |start: u32, length: u32| (start / BLOCK) as usize..(start + length).div_ceil(BLOCK) as usize;
         squares(pixels.y, pixels.height).any(|row| {
             squares(pixels.x, pixels.width).any(|column| self.covered[row * self.columns + column])
         })
     }
 
-    /// None where something has no end, or lies about the eye.
+    /// None where something has no bounds, or not all before the eye.
     fn add_all(&mut self, world: &World, projection: &Projection, region: &Region) -> Option<()> {
         for corners in world.boxes_around_all(BOXES)? {
             let [x, y] = extent_of(projection, &corners)?;
             let squares = |[from, to]: [f64; 2], start: u32, count: usize| {
-                let square = |at: f64| ((at - f64::from(start)) / f64::from(SIDE)).floor();
+                let square = |at: f64| ((at - f64::from(start)) / f64::from(BLOCK)).floor();
                 // Saturating: what lies before the first square ends at 0, what lies after the last begins at its end.
                 (square(from - MARGIN) as usize).min(count)..((square(to + MARGIN) + 1.0) as usize).min(count)
             };
@@ -64,11 +63,12 @@ impl Cover {
     }
 }
 
-/// From where to where a box, told by its corners, extends in the image, by axis; none where it is not all before the eye.
+/// From where to where a box, told by its corners, extends in the image, by axis; none where it is not all before the eye,
+/// or so near to its plane that the numbers overflow.
 fn extent_of(projection: &Projection, corners: &[DVec3; 8]) -> Option<[[f64; 2]; 2]> {
     let mut extent = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for corner in corners {
-        let (x, y, _) = projection.pixel_of(*corner)?;
+        let (x, y, _) = projection.pixel_of(*corner).filter(|(x, y, _)| x.is_finite() && y.is_finite())?;
         for ([low, high], at) in extent.iter_mut().zip([x, y]) {
             (*low, *high) = (low.min(at), high.max(at));
         }

@@ -136,24 +136,22 @@ impl TriangleTree {
 
     /// The nearest hit; of several at the same t, the lowest triangle's.
     pub(crate) fn intersect(&self, ray: &Ray, tally: &impl Tally) -> Option<Hit> {
-        match NarrowRay::prepare(ray, &self.bounds) {
+        dispatch!(self.level, simd => match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => None,
-            Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::intersect(simd, self, ray, &narrow, tally))
-            }
+            Narrowed::Ready(narrow) => single::intersect(simd, self, ray, &narrow, tally),
             Narrowed::OutOfRange => self.intersect_wide(ray, tally),
-        }
+        })
     }
 
     /// Whether anything is hit.
     pub(crate) fn occluded(&self, ray: &Ray, tally: &impl Tally) -> bool {
-        match NarrowRay::prepare(ray, &self.bounds) {
+        dispatch!(self.level, simd => match NarrowRay::prepare(ray, &self.bounds) {
             Narrowed::Misses => false,
             Narrowed::Ready(narrow) => {
-                dispatch!(self.level, simd => single::occluded(simd, self, Child::inner(0), ray, &narrow, None, tally))
+                single::occluded(simd, self, Child::inner(0), ray, &narrow, None, tally)
             }
             Narrowed::OutOfRange => self.intersect_wide(ray, tally).is_some(),
-        }
+        })
     }
 
     /// The nearest hits of the rays `wanted` of a packet, each as [`TriangleTree::intersect`] would find it. They have been

@@ -58,7 +58,7 @@ pub(super) const LEAST_COMPONENT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl NarrowRay {
     /// Prepares a ray for what lies within `bounds`, which are finite and not empty.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn prepare(ray: &Ray, bounds: &Bounds) -> Narrowed {
         let clipped = Clipped::new(ray, bounds);
         if !clipped.fits {
