@@ -9,13 +9,13 @@ use crate::cancel::CancelToken;
 use crate::geometry::DirectionFan;
 use crate::sampling::{HemisphereLattice, Key};
 use crate::scene::AmbientOcclusion;
-use crate::world::{FansScratch, Intersection, World};
+use crate::world::{FanScratch, Intersection, World};
 
 /// Memory that points leave to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OcclusionScratch {
     directions: DirectionFan,
-    fans: FansScratch,
+    fans: FanScratch,
 }
 
 /// Estimates c_a at one point after another.
@@ -69,7 +69,7 @@ impl AmbientOcclusionSampler {
                 return;
             }
             counts.ao += fan.count as u64;
-            let occluded = world.occluded_fan_with(at, fan, self.distance, fans, tally);
+            let occluded = world.occluded_fan_tallied(at, fan, self.distance, fans, tally);
             for visible in bits(fan.all() & !occluded) {
                 sum += fan.elevation(visible);
             }

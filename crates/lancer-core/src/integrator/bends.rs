@@ -128,7 +128,7 @@ mod tests {
                     (ior.before[lane], ior.after[lane]) =
                         [(1.0, 1.5), (1.5, 1.0), (1.3, 1.3)][random.below(3)];
                 }
-                let hits = world.intersect_packet(&rays, 0xffff);
+                let hits = world.intersect_packet(&rays, 0xffff, &mut Default::default());
                 met.find(&world, &rays, &hits, false);
                 bends.mirror(world.level(), &rays, &met);
                 bends.refract(world.level(), &rays, &met, &ior);

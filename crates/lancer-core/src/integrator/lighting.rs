@@ -182,7 +182,7 @@ mod tests {
                 let origin = DVec3::new(3.0 * sin, 0.3 * cos, 3.0 * cos);
                 rays.set(lane, &Ray::new(origin, DVec3::new(-sin, 0.1, -cos).normalize()));
             }
-            met.find(&world, &rays, &world.intersect_packet(&rays, wanted), true);
+            met.find(&world, &rays, &world.intersect_packet(&rays, wanted, &mut Default::default()), true);
             let mut looks = [None; LANES];
             for lane in bits(wanted) {
                 let material = &materials[(step + lane) % materials.len()];

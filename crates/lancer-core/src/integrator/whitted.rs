@@ -194,7 +194,7 @@ impl<'w> Whitted<'w> {
         counts.primary += rays.count() as u64;
         let Scratch { packets, met, ambient, .. } = scratch;
         let hits = self.intersect(rays.packet(), rays.lanes(), packets, &Uncounted);
-        self.world.seen(rays.packet(), &hits, false, met, &Uncounted);
+        self.world.seen(rays.packet(), &hits, false, met, packets, &Uncounted);
         let mut occlusions = [1.0; LANES];
         for (lane, occlusion) in occlusions.iter_mut().enumerate() {
             if let Some(at) = met.at(self.world, lane) {
@@ -214,7 +214,7 @@ impl<'w> Whitted<'w> {
         tally: &impl Tally,
     ) -> [Option<Hit>; LANES] {
         if wanted.count_ones() >= WORTH_A_PACKET {
-            return self.world.intersect_packet_with(rays, wanted, scratch);
+            return self.world.intersect_packet(rays, wanted, scratch);
         }
         let mut hits = [None; LANES];
         for lane in bits(wanted) {
@@ -233,7 +233,7 @@ impl<'w> Whitted<'w> {
         tally: &impl Tally,
     ) -> u32 {
         if wanted.count_ones() >= WORTH_A_PACKET {
-            return self.world.occluded_packet_with(rays, wanted, left, scratch);
+            return self.world.occluded_packet(rays, wanted, left, scratch);
         }
         bits(wanted)
             .filter(|&lane| self.world.occluded_tallied(&rays.ray(lane), tally))
@@ -386,7 +386,7 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         radiances: &mut [Rgb; LANES],
     ) {
         let world = self.integrator.world;
-        let touching = world.seen(rays, hits, L::HEARS, self.met, self.tally);
+        let touching = world.seen(rays, hits, L::HEARS, self.met, self.packets, self.tally);
         let mut looks = [None; LANES];
         for (lane, look) in looks.iter_mut().enumerate() {
             *look = self.met.look(world, lane);

@@ -2,7 +2,7 @@
 
 use super::{Intersection, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
-use crate::accel::triangles::{Fan, FanScratch, Receiver, visit_fan};
+use crate::accel::triangles::{Fan, MeshFanScratch, Receiver, visit_fan};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::{DMat3, DVec3, DirectionFan, Ray};
 use crate::shape::triangle::Canonical;
@@ -20,17 +20,23 @@ impl World {
     ///
     /// The answer for each direction is that of [`World::occluded`] for `at.spawn(direction)`; it is only found
     /// faster.
-    pub fn occluded_fan(&self, at: &Intersection, fan: &DirectionFan, reach: f64) -> u64 {
-        self.occluded_fan_with(at, fan, reach, &mut FansScratch::default(), &Uncounted)
-    }
-
-    /// As [`World::occluded_fan`], with memory from before, and tells what it looks at.
-    pub(crate) fn occluded_fan_with(
+    pub fn occluded_fan(
         &self,
         at: &Intersection,
         fan: &DirectionFan,
         reach: f64,
-        scratch: &mut FansScratch,
+        scratch: &mut FanScratch,
+    ) -> u64 {
+        self.occluded_fan_tallied(at, fan, reach, scratch, &Uncounted)
+    }
+
+    /// As [`World::occluded_fan`], and tells what it looks at.
+    pub(crate) fn occluded_fan_tallied(
+        &self,
+        at: &Intersection,
+        fan: &DirectionFan,
+        reach: f64,
+        scratch: &mut FanScratch,
         tally: &impl Tally,
     ) -> u64 {
         let wanted = fan.all();
@@ -71,7 +77,7 @@ impl World {
         id: ObjectId,
         rays: &FanRays,
         wanted: u64,
-        scratch: &mut FanScratch,
+        scratch: &mut MeshFanScratch,
         tally: &impl Tally,
     ) -> u64 {
         if wanted == 0 {
@@ -102,10 +108,10 @@ impl World {
         &self,
         rays: &FanRays,
         wanted: u64,
-        scratch: &mut FansScratch,
+        scratch: &mut FanScratch,
         tally: &impl Tally,
     ) -> u64 {
-        let FansScratch { objects, mesh } = scratch;
+        let FanScratch { objects, mesh } = scratch;
         let mut open = wanted;
         let mut found = false;
         if let ObjectIndex::Bvh(tree) = &self.index
@@ -141,11 +147,11 @@ impl World {
     }
 }
 
-/// Memory that fans leave to the next.
+/// Memory that fans leave to the next; what is in it makes no difference.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct FansScratch {
+pub struct FanScratch {
     objects: Fan,
-    mesh: FanScratch,
+    mesh: MeshFanScratch,
 }
 
 /// A fan where it starts.

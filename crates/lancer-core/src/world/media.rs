@@ -3,7 +3,7 @@
 //! Dielectrics may be nested, may overlap and may touch. The medium is that of the object entered last; objects
 //! are remembered one by one, so that leaving an outer one while inside an inner one changes nothing.
 
-use super::{Hit, Intersection, Intersections, ObjectId, World};
+use super::{Hit, Intersection, Intersections, ObjectId, PacketScratch, World};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::error::leave_surface;
 use crate::geometry::packet::TOGETHER;
@@ -168,11 +168,12 @@ impl World {
         hits: &[Option<Hit>; LANES],
         with_uv: bool,
         met: &mut Intersections,
+        scratch: &mut PacketScratch,
         tally: &impl Tally,
     ) -> Vec<(usize, Vec<Touching>)> {
         met.find(self, rays, hits, with_uv);
         let mut touching = Vec::new();
-        for lane in bits(self.worth_seeing(rays, met)) {
+        for lane in bits(self.worth_seeing(rays, met, scratch)) {
             let Some(mut at) = met.at(self, lane) else { continue };
             let others = self.see(&rays.ray(lane), &mut at, tally);
             met.put(lane, &at);
@@ -185,7 +186,7 @@ impl World {
 
     /// Which of the rays that have met surfaces [`World::see`] has to look at: those that have met dielectrics, without
     /// those that touch nothing for sure, as almost all do.
-    fn worth_seeing(&self, rays: &RayPacket, met: &Intersections) -> u32 {
+    fn worth_seeing(&self, rays: &RayPacket, met: &Intersections, scratch: &mut PacketScratch) -> u32 {
         let transmits = |lane: &usize| met.material(self, *lane).is_some_and(|it| !it.transmit.is_black());
         let dielectric = bits(met.lanes()).filter(transmits).fold(0, |set, lane| set | 1_u32 << lane);
         if dielectric.count_ones() < TOGETHER {
@@ -201,7 +202,7 @@ impl World {
             }
         });
         let own = std::array::from_fn(|lane| met.face(lane).map_or(ObjectId(0), |face| face.object));
-        self.may_meet_others(&segments, dielectric, &own)
+        self.may_meet_others(&segments, dielectric, &own, scratch)
     }
 
     /// The surfaces of other objects that coincide, within rounding, with the one at `at`, as a ray in

@@ -28,12 +28,12 @@ mod tests;
 
 pub use compile::{CompileControl, CompileOptions};
 pub use error::CompileError;
-pub(crate) use fan::FansScratch;
+pub use fan::FanScratch;
 pub use intersection::{Face, Intersection};
 pub(crate) use intersection::{Intersections, Look};
 pub use media::Media;
 pub(crate) use media::{Interface, Touching};
-pub(crate) use packet::PacketScratch;
+pub use packet::PacketScratch;
 
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{NarrowRay, Narrowed, walk};

@@ -15,12 +15,7 @@ const LANES: usize = RayPacket::LANES;
 impl World {
     /// The nearest hits of the rays `wanted` of a packet, a bit for each: what [`World::intersect`] finds, found
     /// faster where the rays go much the same way.
-    pub fn intersect_packet(&self, rays: &RayPacket, wanted: u32) -> [Option<Hit>; LANES] {
-        self.intersect_packet_with(rays, wanted, &mut PacketScratch::default())
-    }
-
-    /// The same, with memory from before.
-    pub(crate) fn intersect_packet_with(
+    pub fn intersect_packet(
         &self,
         rays: &RayPacket,
         wanted: u32,
@@ -52,12 +47,7 @@ impl World {
     /// Which of the rays `wanted` of a packet meet anything, as [`World::occluded`] tells. `left` are the faces that
     /// rays start from, as [`Intersection::face_left_for`](super::Intersection::face_left_for) knows them: triangles
     /// among them need no test, which would be too close to tell.
-    pub fn occluded_packet(&self, rays: &RayPacket, wanted: u32, left: &[Option<Face>; LANES]) -> u32 {
-        self.occluded_packet_with(rays, wanted, left, &mut PacketScratch::default())
-    }
-
-    /// The same, with memory from before.
-    pub(crate) fn occluded_packet_with(
+    pub fn occluded_packet(
         &self,
         rays: &RayPacket,
         wanted: u32,
@@ -80,14 +70,21 @@ impl World {
     }
 
     /// Which of the rays `wanted` of a packet may meet anything but the objects `excluded`, of which each ray has one.
-    pub(super) fn may_meet_others(&self, rays: &RayPacket, wanted: u32, excluded: &[ObjectId; LANES]) -> u32 {
+    pub(super) fn may_meet_others(
+        &self,
+        rays: &RayPacket,
+        wanted: u32,
+        excluded: &[ObjectId; LANES],
+        scratch: &mut PacketScratch,
+    ) -> u32 {
         let mut met = 0;
-        let PacketScratch { mut narrow, mut local } = PacketScratch::default();
-        let visited = self.visit_objects_of_packet(rays, wanted, &mut narrow, |id, object, lanes, _| {
+        let PacketScratch { narrow, local } = scratch;
+        local.frame = None;
+        let visited = self.visit_objects_of_packet(rays, wanted, narrow, |id, object, lanes, _| {
             let others =
                 bits(lanes).filter(|&lane| excluded[lane] != id).fold(0, |set, lane| set | 1 << lane);
             if others != 0 {
-                met |= object.occluded_packet(rays, &mut local, others, &[None; LANES], self);
+                met |= object.occluded_packet(rays, local, others, &[None; LANES], self);
             }
             met
         });
@@ -165,9 +162,10 @@ impl<F: FnMut(Child, u32, &mut [f64; LANES]) -> u32> Visitor for Leaves<'_, F> {
     }
 }
 
-/// Memory that packets leave to the next: to fill it with zeros for each would take a hundredth of a picture's time.
+/// Memory that packets leave to the next; what is in it makes no difference. To fill it with zeros for each packet would
+/// take some hundredths of a picture's time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct PacketScratch {
+pub struct PacketScratch {
     /// The rays in the world, ready for the tree over the objects.
     narrow: NarrowPacket,
     local: Local,

@@ -140,7 +140,7 @@ impl Fan {
 
 /// Memory that fans leave to the next: to fill it anew for each would take some hundredths of their time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct FanScratch {
+pub(crate) struct MeshFanScratch {
     fan: Fan,
     pairs: Pairs,
 }
@@ -156,11 +156,11 @@ pub(super) fn occluded<S: Simd>(
     receiver: &Receiver,
     directions: &DirectionFan,
     wanted: u64,
-    scratch: &mut FanScratch,
+    scratch: &mut MeshFanScratch,
     tally: &impl Tally,
     mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
 ) -> u64 {
-    let FanScratch { fan, pairs: few } = scratch;
+    let MeshFanScratch { fan, pairs: few } = scratch;
     fan.prepare(receiver, directions, &tree.bounds);
     few.clear();
     let fan = &*fan;

@@ -15,7 +15,7 @@ mod single;
 mod tests;
 mod walk;
 
-pub(crate) use fan::{Fan, FanScratch, Receiver};
+pub(crate) use fan::{Fan, MeshFanScratch, Receiver};
 pub(crate) use packet::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 pub(crate) use ray::{NarrowRay, Narrowed};
 pub(crate) use walk::walk;
@@ -187,7 +187,7 @@ impl TriangleTree {
         receiver: &Receiver,
         directions: &DirectionFan,
         wanted: u64,
-        scratch: &mut FanScratch,
+        scratch: &mut MeshFanScratch,
         tally: &impl Tally,
         mut decide: impl FnMut(usize, &[[f32; 3]; 3]) -> bool,
     ) -> Option<u64> {

@@ -267,7 +267,14 @@ fn a_leafs_bound_on_its_triangles_elevation_holds() {
                 let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: reach };
                 let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
                 let found = tree
-                    .occluded_fan(&receiver, &fan, fan.all(), &mut FanScratch::default(), &Uncounted, decide)
+                    .occluded_fan(
+                        &receiver,
+                        &fan,
+                        fan.all(),
+                        &mut MeshFanScratch::default(),
+                        &Uncounted,
+                        decide,
+                    )
                     .unwrap();
                 for i in 0..fan.count {
                     let ray = ray(i);
@@ -297,7 +304,7 @@ fn the_few_directions_that_meet_a_crowd_of_boxes_find_what_rays_do() {
             let ray = |i: usize| Ray { origin: point, direction: fan.direction(i), t_max: 10.0 };
             let decide = |i: usize, triangle: &[[f32; 3]; 3]| Canonical::new(&ray(i)).hits(triangle);
             let found = tree
-                .occluded_fan(&receiver, &fan, fan.all(), &mut FanScratch::default(), &Uncounted, decide)
+                .occluded_fan(&receiver, &fan, fan.all(), &mut MeshFanScratch::default(), &Uncounted, decide)
                 .unwrap();
             for i in 0..fan.count {
                 let expected = tree.occluded(&ray(i), &Uncounted);

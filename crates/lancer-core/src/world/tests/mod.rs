@@ -67,6 +67,8 @@ fn crowd(seed: u32) -> Scene {
 
 #[test]
 fn packets_find_what_each_of_their_rays_finds_alone() {
+    // Of other worlds, too: what is in it is to make no difference.
+    let mut scratch = PacketScratch::default();
     let mut random = Random::new(11);
     let mut hits = [0; 2];
     for seed in 0..4 {
@@ -83,8 +85,9 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
                     packet.set(lane, &Ray { direction, t_max, ..first });
                 }
                 let wanted = [0xffff, 0x0fff, 0x1020, 0xaaaa][random.below(4)];
-                let nearest = world.intersect_packet(&packet, wanted);
-                let occluded = world.occluded_packet(&packet, wanted, &[None; RayPacket::LANES]);
+                let nearest = world.intersect_packet(&packet, wanted, &mut scratch);
+                let occluded =
+                    world.occluded_packet(&packet, wanted, &[None; RayPacket::LANES], &mut scratch);
                 assert_eq!(occluded & !wanted, 0);
                 for (lane, nearest) in nearest.into_iter().enumerate() {
                     let alone = world.intersect(&packet.ray(lane)).filter(|_| wanted >> lane & 1 == 1);
@@ -134,7 +137,7 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
                     let direction = first.direction + random.point(spread);
                     packet.set(lane, &Ray { direction, ..first });
                 }
-                let hits = world.intersect_packet(&packet, 0xfff7);
+                let hits = world.intersect_packet(&packet, 0xfff7, &mut Default::default());
                 met.find(&world, &packet, &hits, true);
                 for (lane, hit) in hits.iter().enumerate() {
                     let ray = packet.ray(lane);
@@ -184,7 +187,7 @@ fn no_segment_is_stopped_by_the_face_that_it_leaves() {
                 known += u32::from(left.is_some());
                 grazing += u32::from(left.is_some() && height < 1e-9 * across.length());
             }
-            let occluded = world.occluded_packet(&segments, 0xffff, &left);
+            let occluded = world.occluded_packet(&segments, 0xffff, &left, &mut Default::default());
             for lane in 0..RayPacket::LANES {
                 let alone = world.occluded(&segments.ray(lane));
                 assert_eq!(occluded >> lane & 1 == 1, alone, "{at:?}, {:?}", segments.ray(lane));
@@ -540,6 +543,7 @@ fn gathering(random: &mut Random) -> Scene {
 
 #[test]
 fn a_fan_is_occluded_where_its_rays_are() {
+    let mut scratch = FanScratch::default();
     let mut random = Random::new(21);
     let (mut open, mut shut) = (0, 0);
     for round in 0..6 {
@@ -565,7 +569,11 @@ fn a_fan_is_occluded_where_its_rays_are() {
                     bits | u64::from(oracle.occluded(&ray)) << i
                 });
                 for world in &worlds {
-                    assert_eq!(world.occluded_fan(&at, &fan, reach), expected, "{ray:?} {reach}");
+                    assert_eq!(
+                        world.occluded_fan(&at, &fan, reach, &mut scratch),
+                        expected,
+                        "{ray:?} {reach}"
+                    );
                 }
                 open += fan.count as u32 - expected.count_ones();
                 shut += expected.count_ones();
