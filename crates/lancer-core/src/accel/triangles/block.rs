@@ -145,7 +145,12 @@ impl<V> TestRays<V> {
     where
         V: SimdFloat<S, Element = f32>,
     {
-        let &TestTriangles { corner: a, edges: [e1, e2], longest: edge, determinant_error } = triangles;
+        let &TestTriangles {
+            corner: a,
+            edges: [e1, e2],
+            longest: edge,
+            determinant_error: denominator_error,
+        } = triangles;
         let from_a = add(sub(self.origin, a), self.origin_rest);
         let p = cross(self.direction, e2);
         let q = cross(from_a, e1);
@@ -161,7 +166,6 @@ impl<V> TestRays<V> {
         // the numerator. Derived in docs/how-it-works/kernels.md.
         let reach = largest(from_a);
         let error = edge * (reach * (64.0 * UNIT_ROUNDOFF) + self.origin_error * 8.0) + UNDERFLOW;
-        let denominator_error = determinant_error;
         let numerator_error = error * edge + UNDERFLOW;
         let sum_error = error * 3.0 + denominator_error * 2.0;
         let rest = denominator - u - v;
