@@ -44,6 +44,16 @@ struct List<const ROOM: usize> {
 impl<const ROOM: usize> List<ROOM> {
     const EMPTY: Self = Self { children: [0; ROOM], directions: [0; ROOM], count: 0 };
 
+    /// Adds the directions set in `mask` with a child.
+    #[inline(always)]
+    fn add(&mut self, child: Child, mask: u64) {
+        for direction in bits(mask) {
+            self.children[self.count] = child.word();
+            self.directions[self.count] = direction as u32;
+            self.count += 1;
+        }
+    }
+
     /// Adds a direction with those of eight children that it has met, without a branch for each.
     #[inline(always)]
     fn append<S: Simd>(&mut self, direction: u32x8<S>, children: u32x8<S>, met: mask32x8<S>) {
@@ -93,22 +103,14 @@ impl Pairs {
     /// Adds the directions set in `mask`, at most [`ALONE`], with a node. Says whether there are enough to follow.
     #[inline(always)]
     pub(super) fn add(&mut self, node: Child, mask: u64) -> bool {
-        for direction in bits(mask) {
-            self.nodes.children[self.nodes.count] = node.word();
-            self.nodes.directions[self.nodes.count] = direction as u32;
-            self.nodes.count += 1;
-        }
+        self.nodes.add(node, mask);
         self.nodes.count >= ENOUGH
     }
 
     /// Adds the directions set in `mask`, at most [`APART`], with a leaf. Says whether there are enough to be tested.
     #[inline(always)]
     pub(super) fn add_leaf(&mut self, leaf: Child, mask: u64) -> bool {
-        for direction in bits(mask) {
-            self.leaves.children[self.leaves.count] = leaf.word();
-            self.leaves.directions[self.leaves.count] = direction as u32;
-            self.leaves.count += 1;
-        }
+        self.leaves.add(leaf, mask);
         self.leaves.count >= BATCH
     }
 
