@@ -3,7 +3,7 @@
 //! Shape: a box is its eight corners, in the order of [`Bounds::corners`]; it may be turned and sheared.
 
 use super::geometry::TriangleIndex;
-use super::{ObjectId, ObjectIndex, World};
+use super::{Object, ObjectId, ObjectIndex, World};
 use crate::accel::Aabb;
 use crate::accel::bvh::{boxes_around_all, boxes_at};
 use crate::geometry::{Bounds, DVec3};
@@ -22,7 +22,7 @@ impl World {
     pub fn object_corners(&self, id: ObjectId) -> Option<[DVec3; 8]> {
         let object = self.object(id);
         let bounds = object.geometry.bounds(&self.meshes);
-        bounds.is_finite().then(|| bounds.corners().map(|corner| object.placement.point_to_world(corner)))
+        bounds.is_finite().then(|| corners_in_world(object, &bounds))
     }
 
     /// The boxes at a level of the tree over the objects, the root's being 0: at most `most`. Those of leaves that
@@ -46,8 +46,7 @@ impl World {
             TriangleIndex::Kd(tree) => tree.cells_at(level, most),
             TriangleIndex::None => Vec::new(),
         };
-        let to_world = |corner| object.placement.point_to_world(corner);
-        boxes.iter().map(|aabb| aabb.to_bounds().corners().map(to_world)).collect()
+        boxes.iter().map(|aabb| corners_in_world(object, &aabb.to_bounds())).collect()
     }
 
     /// At most `most` boxes, which together hold all objects; none where an object has no bounds.
@@ -66,15 +65,19 @@ impl World {
         let mut boxes = Vec::new();
         for &id in &self.bounded {
             let object = self.object(id);
-            let to_world = |corner| object.placement.point_to_world(corner);
             match object.geometry.triangle_tree(&self.meshes) {
                 Some(tree) => {
                     let of_tree = tree.boxes_around_all(share);
-                    boxes.extend(of_tree.iter().map(|aabb| aabb.to_bounds().corners().map(to_world)));
+                    boxes.extend(of_tree.iter().map(|aabb| corners_in_world(object, &aabb.to_bounds())));
                 }
                 None => boxes.extend(self.object_corners(id)),
             }
         }
         Some(boxes)
     }
+}
+
+/// The corners of a box in an object's space.
+fn corners_in_world(object: &Object, bounds: &Bounds) -> [DVec3; 8] {
+    bounds.corners().map(|corner| object.placement.point_to_world(corner))
 }

@@ -15,26 +15,27 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, u32x16};
 
 /// For each ray of a packet, the triangles that may be its nearest hit.
-pub(super) struct Nearby<'a> {
+pub(super) struct Nearby {
     /// One of them, most often the only one, by its place in the blocks; and where it is hit at the soonest, which is
     /// not after the ray's end: infinite where there is none.
     place: [u32; LANES],
     earliest: Lane,
     /// Others, each with its ray, and which rays have any: where triangles lie within rounding of each other, as at
     /// an edge.
-    others: &'a mut Others,
+    others: ArrayVec<(usize, Candidate), { Self::OTHERS }>,
     crowded: u32,
     /// Rays that had no room for all of theirs.
     pub(super) left_over: u32,
 }
 
-/// More than this many are not kept for a packet. Its memory is lent: moved, it would be copied.
-pub(super) type Others = ArrayVec<(usize, Candidate), 64>;
+impl Nearby {
+    /// More others than this are not kept for a packet.
+    const OTHERS: usize = 64;
 
-impl<'a> Nearby<'a> {
     #[inline(always)]
-    pub(super) fn new(others: &'a mut Others) -> Self {
-        Self { place: [0; LANES], earliest: [f32::INFINITY; LANES], others, crowded: 0, left_over: 0 }
+    pub(super) fn new() -> Self {
+        let (place, earliest) = ([0; LANES], [f32::INFINITY; LANES]);
+        Self { place, earliest, others: ArrayVec::new(), crowded: 0, left_over: 0 }
     }
 
     /// Adds a triangle, by its place, for the rays that may hit it before their `end`. Where one hits it for sure, its

@@ -9,7 +9,7 @@
 use super::TriangleTree;
 use super::block::{Block, TestRays, TestTriangles, Verdict, blocks_of, place_of};
 use super::lanes::{load3, splat3};
-use super::nearby::{Nearby, Others};
+use super::nearby::Nearby;
 use super::ray::{Clipped, NarrowRay};
 use super::single::{self, add_leaf};
 use super::walk::{LeafVisitor, STACK, nearest_last, walk_from};
@@ -403,8 +403,7 @@ pub(super) fn intersect<S: Simd>(
 ) -> ([Option<Hit>; LANES], u32) {
     let ReadyRays { rays, narrow: packet } = rays;
     let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
-    let mut others = Others::new();
-    let mut search = NearestSearch { simd, tree, packet, nearby: Nearby::new(&mut others) };
+    let mut search = NearestSearch { simd, tree, packet, nearby: Nearby::new() };
     let mut ends = packet.end;
     let mut searched = 0;
     while let Some((group, backward)) = packet.octant(simd, &mut open) {
@@ -428,7 +427,7 @@ struct NearestSearch<'a, S: Simd> {
     simd: S,
     tree: &'a TriangleTree,
     packet: &'a NarrowPacket,
-    nearby: Nearby<'a>,
+    nearby: Nearby,
 }
 
 impl<S: Simd> Visitor for NearestSearch<'_, S> {
