@@ -127,6 +127,7 @@ impl World {
             ambient: scene.ambient,
             background: scene.background,
             bounded: Vec::new(),
+            boxes: arrayvec::ArrayVec::new(),
             unbounded: Vec::new(),
             frames: Vec::new(),
             index: ObjectIndex::None,
@@ -182,6 +183,8 @@ impl World {
             if bounds.is_finite() && aabb.min.iter().chain(&aabb.max).all(|x| x.is_finite()) {
                 self.bounds = self.bounds.union(bounds);
                 self.bounded.push(id);
+                // Of no use where there are more.
+                let _ = self.boxes.try_push(bounds);
                 boxes.push(aabb);
             } else {
                 self.unbounded.push(id);

@@ -23,6 +23,7 @@ mod geometry;
 mod intersection;
 mod media;
 mod packet;
+mod sheaf;
 #[cfg(test)]
 mod tests;
 
@@ -43,6 +44,7 @@ use crate::geometry::{Bounds, Placement, Ray};
 use crate::scene::{Light, Material, MaterialId, NodeId};
 use fearless_simd::{Level, dispatch};
 use geometry::{Geometry, PreparedMesh};
+
 use std::sync::Arc;
 
 /// Which object of a world.
@@ -107,6 +109,8 @@ pub struct World {
     background: Rgb,
     /// The objects with finite boxes, in the order of the tree's primitives.
     bounded: Vec<ObjectId>,
+    /// Their boxes, where packets look at them one by one.
+    boxes: arrayvec::ArrayVec<Bounds, { World::FEW_FOR_PACKETS }>,
     unbounded: Vec<ObjectId>,
     /// For meshes of one placement that follow each other, the bounds around them in their space: rays are carried there
     /// and made ready once for all of them.
@@ -338,6 +342,9 @@ impl World {
 
     /// As many objects as are worth no tree. Untuned.
     const FEW: usize = 3;
+
+    /// The same for packets, which are held against a box in less time than they are made ready for a tree.
+    const FEW_FOR_PACKETS: usize = 8;
 
     fn visit_all_bounded(&self, mut visit: impl FnMut(ObjectId, &Object) -> f64) {
         for &id in &self.bounded {

@@ -1,6 +1,7 @@
 //! Rays that are traced together.
 
 use super::geometry::Geometry;
+use super::sheaf::Sheaf;
 use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
@@ -109,16 +110,26 @@ impl World {
             open
         };
         let mut left = wanted;
-        let one_by_one: &[ObjectId] = if self.bounded.len() <= Self::FEW { &self.bounded } else { &[] };
-        for &id in self.unbounded.iter().chain(one_by_one) {
+        for &id in &self.unbounded {
             if left != 0 {
                 left = visit(id, left, &mut t_max);
             }
         }
-        if !one_by_one.is_empty() || self.bounded.is_empty() || left == 0 {
+        if left == 0 {
             return wanted;
         }
         let rays = RayPacket { t_max, ..rays.clone() };
+        if self.bounded.len() <= Self::FEW_FOR_PACKETS {
+            // What is all there is looks at its own bounds.
+            let sheaf = (self.objects.len() > 1)
+                .then(|| dispatch!(self.level, simd => Sheaf::around(simd, &rays, left)));
+            for (&id, bounds) in self.bounded.iter().zip(&self.boxes) {
+                if left != 0 && sheaf.as_ref().is_none_or(|sheaf| sheaf.may_meet(bounds)) {
+                    left = visit(id, left, &mut t_max);
+                }
+            }
+            return wanted;
+        }
         let mut out_of_range = 0;
         dispatch!(self.level, simd => {
             packet.prepare(&rays, &self.bounds);

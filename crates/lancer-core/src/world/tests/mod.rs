@@ -39,6 +39,11 @@ fn mesh_scene(data: MeshData, transform: Transform) -> Scene {
 
 /// All kinds of shapes under all kinds of transforms.
 fn crowd(seed: u32) -> Scene {
+    gathered(seed, 60)
+}
+
+/// A floor and so many shapes, of which the first comes twice.
+fn gathered(seed: u32, count: usize) -> Scene {
     let mut random = Random::new(seed);
     let mut scene = Scene::new("crowd");
     let shared = Arc::new(soup(seed, 60));
@@ -46,7 +51,7 @@ fn crowd(seed: u32) -> Scene {
     let (even, odd) = (Rgb::BLACK, Rgb::WHITE);
     let chequered = Material { color: Texture::Checker { even, odd, size: 1.0 }, ..Material::default() };
     let materials = [Material::default(), chequered].map(|material| scene.add_material(material));
-    for i in 0..60 {
+    for i in 0..count {
         let shape = match random.below(5) {
             0 => Shape::Sphere,
             1 => Shape::Cube,
@@ -71,8 +76,8 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
     let mut scratch = PacketScratch::default();
     let mut random = Random::new(11);
     let mut hits = [0; 2];
-    for seed in 0..4 {
-        let scene = crowd(seed);
+    let few = (1..12).map(|count| gathered(count, count as usize));
+    for scene in (0..4).map(crowd).chain(few) {
         for accelerator in Accelerator::ALL {
             let options = CompileOptions { accelerator, ..CompileOptions::default() };
             let world = World::compile(&scene, &options).unwrap();
