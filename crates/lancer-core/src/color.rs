@@ -1,6 +1,6 @@
 //! Linear RGB with sRGB primaries, and the encoding of it that files use.
 
-use crate::geometry::portable;
+use crate::geometry::{RayPacket, portable};
 use std::ops::{Add, AddAssign, Mul, MulAssign};
 
 /// A colour, an intensity, a radiance or a coefficient: one number a channel, linear, sRGB primaries.
@@ -105,6 +105,36 @@ impl Mul<f64> for Rgb {
 impl MulAssign<f64> for Rgb {
     fn mul_assign(&mut self, factor: f64) {
         *self = *self * factor;
+    }
+}
+
+/// A colour for each ray of a packet, by channel as vector instructions want it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Colors([[f64; RayPacket::LANES]; 3]);
+
+impl Colors {
+    /// The same colour for all.
+    #[inline(always)]
+    pub fn splat(color: Rgb) -> Self {
+        Self(color.to_array().map(|channel| [channel; RayPacket::LANES]))
+    }
+
+    /// That in a lane.
+    ///
+    /// # Panics
+    /// Where `lane` is not below [`RayPacket::LANES`].
+    #[inline(always)]
+    pub fn at(&self, lane: usize) -> Rgb {
+        Rgb::new(self.0[0][lane], self.0[1][lane], self.0[2][lane])
+    }
+
+    /// Puts a colour into a lane.
+    ///
+    /// # Panics
+    /// Where `lane` is not below [`RayPacket::LANES`].
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, color: Rgb) {
+        (self.0[0][lane], self.0[1][lane], self.0[2][lane]) = (color.r, color.g, color.b);
     }
 }
 

@@ -21,9 +21,8 @@ pub(super) fn intersect_packets(world: &World, packets: &[(RayPacket, u32)], hit
     let mut scratch = PacketScratch::default();
     for (rays, wanted) in packets {
         let found = world.intersect_packet(rays, *wanted, &mut scratch);
-        hits.extend(
-            found.into_iter().enumerate().filter(|(lane, _)| wanted >> lane & 1 == 1).map(|(_, hit)| hit),
-        );
+        let lanes = (0..RayPacket::LANES).filter(|lane| wanted >> lane & 1 == 1);
+        hits.extend(lanes.map(|lane| found.at(lane)));
     }
 }
 

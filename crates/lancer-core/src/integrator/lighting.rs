@@ -1,13 +1,13 @@
 //! What the lights do at the surfaces that a packet of rays has met.
 
 use crate::accel::bits;
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::geometry::RayPacket;
 use crate::geometry::error::{segment_from_surface, stands_off};
-use crate::geometry::packet::{Vectors, at, put};
-use crate::scene::Light;
+use crate::geometry::packet::at;
+use crate::scene::{Light, Material};
 use crate::shade::{Incidence, diffuse, specular};
-use crate::world::{Face, Intersections, Look, World};
+use crate::world::{Face, Intersections, World};
 use fearless_simd::dispatch;
 
 const LANES: usize = RayPacket::LANES;
@@ -15,25 +15,18 @@ const LANES: usize = RayPacket::LANES;
 /// What each light adds to surfaces.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lighting {
-    looks: Looks,
+    /// k_d.
+    diffuse: Colors,
     lights: Vec<Reach>,
     incidences: Incidences,
     segments: RayPacket,
-}
-
-/// What surfaces are made of, lane by lane as vector instructions want it.
-#[derive(Clone, Debug, Default)]
-struct Looks {
-    color: Vectors,
-    /// k_d.
-    diffuse: Vectors,
 }
 
 /// How far a light reaches.
 #[derive(Clone, Debug, Default)]
 struct Reach {
     /// What it adds where nothing hides it.
-    radiance: Vectors,
+    radiance: Colors,
     /// The surfaces that it adds to, a bit for each.
     lit: u32,
 }
@@ -56,16 +49,15 @@ impl Lighting {
         world: &World,
         rays: &RayPacket,
         met: &Intersections,
-        looks: &[Option<Look>; LANES],
+        materials: &[Option<&Material>; LANES],
         mut hidden: impl FnMut(&RayPacket, u32, &[Option<Face>; LANES]) -> u32,
     ) {
-        let Self { looks: lanes, lights: reaches, incidences, segments } = self;
+        let Self { diffuse, lights: reaches, incidences, segments } = self;
         reaches.resize_with(world.lights().len(), Reach::default);
         let mut open = 0;
-        for (lane, look) in looks.iter().enumerate() {
-            if let Some(look) = look.filter(|look| look.material.is_lit()) {
-                put(&mut lanes.color, lane, look.color.to_array().into());
-                put(&mut lanes.diffuse, lane, look.material.diffuse.to_array().into());
+        for (lane, material) in materials.iter().enumerate() {
+            if let Some(material) = material.filter(|material| material.is_lit()) {
+                diffuse.put(lane, material.diffuse);
                 open |= 1 << lane;
             }
         }
@@ -75,19 +67,18 @@ impl Lighting {
                 continue;
             }
             dispatch!(world.level(), _simd => {
-                lanes.lit_by(light, rays, met, reach, incidences, segments);
+                reach.find(light, rays, met, diffuse, incidences, segments);
             });
             let mut left = [None; LANES];
             for lane in bits(open) {
                 // Also false for a light in the point itself, whose direction is NaN.
                 let faces_the_light = incidences.cosine[lane] > 0.0;
-                let Some(Look { material, color }) = looks[lane].filter(|_| faces_the_light) else {
-                    continue;
-                };
+                let Some(material) = materials[lane].filter(|_| faces_the_light) else { continue };
                 let irradiance = light.intensity * incidences.falloff[lane];
-                let specular = specular(irradiance, material, color, incidences.half_cosine[lane]);
-                let radiance = reach.radiance(lane) + specular;
-                reach.set(lane, radiance);
+                let half_cosine = incidences.half_cosine[lane];
+                let specular = specular(irradiance, material, met.colors.at(lane), half_cosine);
+                let radiance = reach.radiance.at(lane) + specular;
+                reach.radiance.put(lane, radiance);
                 reach.lit |= u32::from(!radiance.is_black()) << lane;
                 left[lane] = met.face(lane).filter(|_| incidences.stands_off[lane]);
             }
@@ -95,33 +86,34 @@ impl Lighting {
         }
     }
 
-    /// By light: what it adds to a surface, and whether nothing hides it.
-    pub(super) fn at(&self, lane: usize) -> impl Iterator<Item = (Rgb, bool)> {
-        self.lights.iter().map(move |reach| (reach.radiance(lane), reach.lit >> lane & 1 == 1))
+    /// Adds what the lights that nothing hides add to each surface, in their order.
+    #[inline(always)]
+    pub(super) fn add_to(&self, sums: &mut Colors) {
+        for reach in &self.lights {
+            for lane in 0..LANES {
+                let is_lit = reach.lit >> lane & 1 == 1;
+                let radiance = if is_lit { reach.radiance.at(lane) } else { Rgb::BLACK };
+                sums.put(lane, sums.at(lane) + radiance);
+            }
+        }
+    }
+
+    /// By light: whether it adds to a surface, and nothing hides it.
+    pub(super) fn visible(&self, lane: usize) -> impl Iterator<Item = bool> {
+        self.lights.iter().map(move |reach| reach.lit >> lane & 1 == 1)
     }
 }
 
 impl Reach {
-    fn radiance(&self, lane: usize) -> Rgb {
-        at(&self.radiance, lane).to_array().into()
-    }
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, radiance: Rgb) {
-        put(&mut self.radiance, lane, radiance.to_array().into());
-    }
-}
-
-impl Looks {
     /// How a light stands to surfaces, what of it they reflect in all directions, and the segments to it: by scalar
     /// functions without branches, of which the compiler makes vector code.
     #[inline(always)]
-    fn lit_by(
-        &self,
+    fn find(
+        &mut self,
         light: &Light,
         rays: &RayPacket,
         met: &Intersections,
-        reach: &mut Reach,
+        coefficients: &Colors,
         incidences: &mut Incidences,
         segments: &mut RayPacket,
     ) {
@@ -135,9 +127,8 @@ impl Looks {
             incidences.cosine[lane] = incidence.cosine;
             incidences.half_cosine[lane] = incidence.half_cosine;
             let irradiance = light.intensity * incidence.falloff;
-            let coefficient = at(&self.diffuse, lane).to_array().into();
-            let color = at(&self.color, lane).to_array().into();
-            reach.set(lane, diffuse(irradiance, coefficient, color, incidence.cosine));
+            let (coefficient, color) = (coefficients.at(lane), met.colors.at(lane));
+            self.radiance.put(lane, diffuse(irradiance, coefficient, color, incidence.cosine));
             segments.set(lane, &segment_from_surface(point, error, geometric_normal, target));
             incidences.stands_off[lane] = stands_off(point, error, geometric_normal, target);
         }
@@ -183,15 +174,18 @@ mod tests {
                 rays.set(lane, &Ray::new(origin, DVec3::new(-sin, 0.1, -cos).normalize()));
             }
             met.find(&world, &rays, &world.intersect_packet(&rays, wanted, &mut Default::default()), true);
+            let color = Rgb::new(0.9, 0.5, 0.1);
+            met.colors = Colors::splat(color);
             let mut looks = [None; LANES];
             for lane in bits(wanted) {
-                let material = &materials[(step + lane) % materials.len()];
-                looks[lane] = Some(Look { material, color: Rgb::new(0.9, 0.5, 0.1) });
+                looks[lane] = Some(&materials[(step + lane) % materials.len()]);
             }
             lighting.find(&world, &rays, &met, &looks, |_, _, _| 0);
+            let mut sums = Colors::default();
+            lighting.add_to(&mut sums);
             for lane in bits(wanted) {
                 let (at, ray) = (met.at(&world, lane).expect("it goes to the ball"), rays.ray(lane));
-                let Some(Look { material, color }) = looks[lane] else { continue };
+                let Some(material) = looks[lane] else { continue };
                 let point = ShadingPoint {
                     position: at.point,
                     normal: at.facing_normal(),
@@ -199,16 +193,18 @@ mod tests {
                     color,
                     material,
                 };
-                for (light, (radiance, visible)) in world.lights().iter().zip(lighting.at(lane)) {
+                let mut sum = Rgb::BLACK;
+                for (light, visible) in world.lights().iter().zip(lighting.visible(lane)) {
                     let term = LightTerm::new(&point, light);
                     assert_eq!(visible, term.is_some());
                     if let Some(term) = term {
-                        assert_eq!(radiance, term.radiance());
+                        sum += term.radiance();
                         lit += 1;
                     } else {
                         unlit += 1;
                     }
                 }
+                assert_eq!(sums.at(lane), sum);
             }
         }
         assert!(lit > 100 && unlit > 100, "{lit} lit, {unlit} not");

@@ -12,14 +12,15 @@ use super::lighting::Lighting;
 use super::{AmbientOcclusionSampler, CameraRays, Listener, RayCounts, RayId, RayKind, Silent, SpawnEvent};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::cancel::CancelToken;
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::geometry::{Ray, RayPacket};
 use crate::sampling::{Branch, Key};
 use crate::scene::{Material, Settings};
 use crate::shade::{AmbientTerm, LightTerm, ShadingPoint};
 use crate::world::{
-    Face, Hit, Interface, Intersection, Intersections, Look, Media, PacketScratch, Touching, World,
+    Face, Hits, Interface, Intersection, Intersections, Media, PacketScratch, Touching, World,
 };
+use fearless_simd::dispatch;
 use std::collections::VecDeque;
 
 /// Finds the radiance that camera rays see.
@@ -122,22 +123,19 @@ impl<'w> Whitted<'w> {
     ) -> Rgb {
         let rays = CameraRays::one(&ray, key);
         let listeners = std::slice::from_mut(listener);
-        let mut sums = [Rgb::BLACK; LANES];
-        self.trace(&rays, media, scratch, counts, listeners, tally, &mut sums);
-        sums[0]
+        self.trace(&rays, media, scratch, counts, listeners, tally).at(0)
     }
 
-    /// Adds to `sums` the radiances that arrive along camera rays from one place, each as [`Whitted::radiance`] finds
-    /// it: sooner where they go much the same way, since they are traced together.
-    pub fn add_radiances(
+    /// The radiances that arrive along camera rays from one place, each as [`Whitted::radiance`] finds it: sooner where
+    /// they go much the same way, since they are traced together.
+    pub fn radiances(
         &self,
         rays: &CameraRays,
         media: &Media,
         scratch: &mut Scratch,
         counts: &mut RayCounts,
-        sums: &mut [Rgb; RayPacket::LANES],
-    ) {
-        self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted, sums);
+    ) -> Colors {
+        self.trace(rays, media, scratch, counts, &mut [Silent; LANES], &Uncounted)
     }
 
     /// The radiance that arrives along a camera ray that meets nothing; none where no pixel can hold it.
@@ -145,7 +143,6 @@ impl<'w> Whitted<'w> {
         Some(self.world.background()).filter(|background| fits_a_pixel(*background))
     }
 
-    #[expect(clippy::too_many_arguments, reason = "as above")]
     fn trace<L: Listener, T: Tally>(
         &self,
         rays: &CameraRays,
@@ -154,8 +151,7 @@ impl<'w> Whitted<'w> {
         counts: &mut RayCounts,
         listeners: &mut [L],
         tally: &T,
-        sums: &mut [Rgb; LANES],
-    ) {
+    ) -> Colors {
         let Scratch { pending, packets, met, lighting, bends, ambient } = scratch;
         let next_id = [1; LANES];
         let mut walk = Walk {
@@ -171,20 +167,20 @@ impl<'w> Whitted<'w> {
             tally,
             next_id,
         };
-        let mut radiances = [Rgb::BLACK; LANES];
+        let mut radiances = Colors::default();
         walk.run(rays, media, &mut radiances);
-        for (sum, radiance) in sums.iter_mut().zip(radiances) {
-            if fits_a_pixel(radiance) {
-                *sum += radiance;
-            } else {
-                counts.replaced += 1;
-            }
+        let fits =
+            (0..LANES).fold(0_u32, |set, lane| set | u32::from(fits_a_pixel(radiances.at(lane))) << lane);
+        for lane in bits(rays.lanes() & !fits) {
+            radiances.put(lane, Rgb::BLACK);
+            counts.replaced += 1;
         }
+        radiances
     }
 
     /// c_a at the surfaces that camera rays meet; 1 where one meets none.
     ///
-    /// With the keys of [`Whitted::add_radiances`] they are the factors of the ambient terms that are found there.
+    /// With the keys of [`Whitted::radiances`] they are the factors of the ambient terms that are found there.
     pub fn occlusions(
         &self,
         rays: &CameraRays,
@@ -212,13 +208,13 @@ impl<'w> Whitted<'w> {
         wanted: u32,
         scratch: &mut PacketScratch,
         tally: &impl Tally,
-    ) -> [Option<Hit>; LANES] {
+    ) -> Hits {
         if wanted.count_ones() >= WORTH_A_PACKET {
             return self.world.intersect_packet(rays, wanted, scratch);
         }
-        let mut hits = [None; LANES];
+        let mut hits = Hits::default();
         for lane in bits(wanted) {
-            hits[lane] = self.world.intersect_tallied(&rays.ray(lane), tally);
+            hits.put(lane, self.world.intersect_tallied(&rays.ray(lane), tally));
         }
         hits
     }
@@ -283,6 +279,15 @@ struct Walk<'a, 'w, L, T> {
     next_id: [u32; LANES],
 }
 
+/// What the rays of a packet have met.
+struct Seen<'w> {
+    materials: [Option<&'w Material>; LANES],
+    /// c_a.
+    occlusions: [f64; LANES],
+    /// The dielectrics that the surfaces touch, by ray, where any do.
+    touching: Vec<(usize, Vec<Touching>)>,
+}
+
 /// A ray that goes on from where it met a surface.
 struct Arrival<'a> {
     /// Which camera ray it comes from.
@@ -301,8 +306,8 @@ struct Continuation {
     media: Media,
 }
 
-impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
-    fn run(&mut self, first: &CameraRays, media: &Media, radiances: &mut [Rgb; LANES]) {
+impl<'w, L: Listener, T: Tally> Walk<'_, 'w, L, T> {
+    fn run(&mut self, first: &CameraRays, media: &Media, radiances: &mut Colors) {
         let camera = &Path {
             kind: RayKind::Primary,
             throughput: Rgb::WHITE,
@@ -346,24 +351,32 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         wanted: u32,
         paths: &[&Path; LANES],
         keys: &[Key; LANES],
-        radiances: &mut [Rgb; LANES],
+        radiances: &mut Colors,
     ) {
-        let hits = self.integrator.intersect(rays, wanted, self.packets, self.tally);
-        let background = self.integrator.world.background();
-        let mut met = 0;
+        let mut throughput = Colors::default();
         for lane in bits(wanted) {
-            let &Path { kind, throughput, .. } = paths[lane];
-            self.count(kind);
-            if hits[lane].is_some() {
-                met |= 1 << lane;
-            } else {
+            throughput.put(lane, paths[lane].throughput);
+            self.count(paths[lane].kind);
+            if L::HEARS {
+                let &Path { kind, throughput, .. } = paths[lane];
                 self.listeners[lane].begin_ray(id, kind, throughput, &rays.ray(lane));
-                self.listeners[lane].background(background);
-                radiances[lane] += background * throughput;
             }
         }
-        if met != 0 {
-            self.shade(id, rays, &hits, paths, keys, radiances);
+        let hits = self.integrator.intersect(rays, wanted, self.packets, self.tally);
+        let mut terms = Colors::splat(self.integrator.world.background());
+        let seen = (hits.lanes() != 0).then(|| self.shade(rays, &hits, keys, &mut terms));
+        for lane in 0..LANES {
+            let is_wanted = wanted >> lane & 1 == 1;
+            let radiance = if is_wanted { terms.at(lane) * throughput.at(lane) } else { Rgb::BLACK };
+            radiances.put(lane, radiances.at(lane) + radiance);
+        }
+        if L::HEARS {
+            for lane in bits(wanted) {
+                self.tell(lane, &rays.ray(lane), seen.as_ref());
+            }
+        }
+        if let Some(seen) = seen {
+            self.continue_paths(id, rays, &seen, paths, keys);
         }
     }
 
@@ -375,76 +388,62 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
     }
 
-    /// The local terms where rays have hit; what they reflect and refract is queued.
-    fn shade(
-        &mut self,
-        id: RayId,
-        rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
-        paths: &[&Path; LANES],
-        keys: &[Key; LANES],
-        radiances: &mut [Rgb; LANES],
-    ) {
+    /// Puts the local terms where rays have hit.
+    fn shade(&mut self, rays: &RayPacket, hits: &Hits, keys: &[Key; LANES], terms: &mut Colors) -> Seen<'w> {
         let world = self.integrator.world;
         let touching = world.seen(rays, hits, L::HEARS, self.met, self.packets, self.tally);
-        let mut looks = [None; LANES];
-        for (lane, look) in looks.iter_mut().enumerate() {
-            *look = self.met.look(world, lane);
+        let materials = self.met.look(world);
+        self.find_lighting(rays, &materials);
+        let occlusions = self.occlusions(&materials, keys);
+        let (met, light) = (self.met.lanes(), world.ambient());
+        let mut coefficients = Colors::default();
+        for lane in bits(met) {
+            coefficients.put(lane, materials[lane].map_or(Rgb::BLACK, |material| material.ambient));
         }
-        self.find_lighting(rays, &looks);
-        // Light alone needs no more of a surface than has been looked at.
-        let wants_surfaces = L::HEARS || self.integrator.occlusion.is_wanted();
-        let mut going_on = 0;
-        for (lane, look) in looks.into_iter().enumerate() {
-            let Some(Look { material, color }) = look else { continue };
-            let (path, key, ray) = (paths[lane], keys[lane], rays.ray(lane));
-            going_on |= u32::from(path.depth > 0 && self.integrator.goes_on(material)) << lane;
-            let at = wants_surfaces.then(|| self.met.at(world, lane)).flatten();
-            let listener = &mut self.listeners[lane];
-            listener.begin_ray(id, path.kind, path.throughput, &ray);
-            let mut point = None;
-            if L::HEARS
-                && let Some(at) = &at
-            {
-                listener.surface(at, color);
-                let (normal, to_eye) = (at.facing_normal(), -ray.direction);
-                point = Some(ShadingPoint { position: at.point, normal, to_eye, color, material });
+        let mut lights = Colors::default();
+        dispatch!(world.level(), _simd => {
+            self.lighting.add_to(&mut lights);
+            for (lane, &occlusion) in occlusions.iter().enumerate() {
+                let (coefficient, color) = (coefficients.at(lane), self.met.colors.at(lane));
+                let ambient = AmbientTerm { occlusion, light, coefficient, color };
+                let is_met = met >> lane & 1 == 1;
+                let term = if is_met { ambient.radiance() + lights.at(lane) } else { terms.at(lane) };
+                terms.put(lane, term);
             }
-            let ambient = self.ambient(lane, at.as_ref(), key, material.ambient, color);
-            let radiance = ambient + self.lights(lane, point.as_ref());
-            radiances[lane] += radiance * path.throughput;
-        }
-        if going_on != 0 {
-            self.continue_paths(id, rays, going_on, &touching, paths, keys);
-        }
+        });
+        Seen { materials, occlusions, touching }
     }
 
-    /// c_a L_a k_a S. Where nothing is known of the surface c_a is 1.
-    fn ambient(
-        &mut self,
-        lane: usize,
-        at: Option<&Intersection>,
-        key: Key,
-        coefficient: Rgb,
-        color: Rgb,
-    ) -> Rgb {
-        let light = self.integrator.world.ambient();
-        let mut term = AmbientTerm { occlusion: 1.0, light, coefficient, color };
-        if term.radiance().is_black() {
-            return Rgb::BLACK;
+    /// c_a at the surfaces, where it makes a difference.
+    fn occlusions(&mut self, materials: &[Option<&Material>; LANES], keys: &[Key; LANES]) -> [f64; LANES] {
+        let Whitted { world, occlusion, .. } = self.integrator;
+        let mut occlusions = [1.0; LANES];
+        if !occlusion.is_wanted() {
+            return occlusions;
         }
-        if let Some(at) = at {
-            let Whitted { world, occlusion, .. } = self.integrator;
-            term.occlusion = occlusion.factor_with(world, at, key, self.counts, self.ambient, self.tally);
+        for (lane, factor) in occlusions.iter_mut().enumerate() {
+            let Some(material) = materials[lane] else { continue };
+            if self.ambient_term(lane, material, 1.0).radiance().is_black() {
+                continue;
+            }
+            if let Some(at) = self.met.at(world, lane) {
+                *factor =
+                    occlusion.factor_with(world, &at, keys[lane], self.counts, self.ambient, self.tally);
+            }
         }
-        self.listeners[lane].ambient(&term);
-        term.radiance()
+        occlusions
+    }
+
+    /// The ambient term at a surface that has been looked at.
+    fn ambient_term(&self, lane: usize, material: &Material, occlusion: f64) -> AmbientTerm {
+        let (light, color) = (self.integrator.world.ambient(), self.met.colors.at(lane));
+        AmbientTerm { occlusion, light, coefficient: material.ambient, color }
     }
 
     /// Finds what each light adds to each surface.
-    fn find_lighting(&mut self, rays: &RayPacket, looks: &[Option<Look>; LANES]) {
+    fn find_lighting(&mut self, rays: &RayPacket, materials: &[Option<&Material>; LANES]) {
         let Self { integrator, packets, met, lighting, counts, tally, .. } = self;
-        lighting.find(integrator.world, rays, met, looks, |segments, wanted, left| {
+        lighting.find(integrator.world, rays, met, materials, |segments, wanted, left| {
             if !integrator.shadows {
                 return 0;
             }
@@ -453,32 +452,46 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         });
     }
 
-    /// The sum over the lights, in their order; `point` is for whoever listens.
-    fn lights(&mut self, lane: usize, point: Option<&ShadingPoint>) -> Rgb {
-        let lights = self.integrator.world.lights();
-        let mut sum = Rgb::BLACK;
-        for (place, (light, (radiance, visible))) in lights.iter().zip(self.lighting.at(lane)).enumerate() {
-            if let Some(term) = point.and_then(|point| LightTerm::new(point, light)) {
+    /// Tells the listener of a ray its terms; `seen` is what the rays of the packet have met, if any has.
+    fn tell(&mut self, lane: usize, ray: &Ray, seen: Option<&Seen>) {
+        let world = self.integrator.world;
+        let surface = seen.and_then(|seen| Some((seen.materials[lane]?, seen.occlusions[lane])));
+        let (Some((material, occlusion)), Some(at)) = (surface, self.met.at(world, lane)) else {
+            self.listeners[lane].background(world.background());
+            return;
+        };
+        let color = self.met.colors.at(lane);
+        self.listeners[lane].surface(&at, color);
+        if !self.ambient_term(lane, material, 1.0).radiance().is_black() {
+            let term = self.ambient_term(lane, material, occlusion);
+            self.listeners[lane].ambient(&term);
+        }
+        let (normal, to_eye) = (at.facing_normal(), -ray.direction);
+        let point = ShadingPoint { position: at.point, normal, to_eye, color, material };
+        for (place, (light, visible)) in world.lights().iter().zip(self.lighting.visible(lane)).enumerate() {
+            if let Some(term) = LightTerm::new(&point, light) {
                 self.listeners[lane].light(place, light, &term, visible);
             }
-            if visible {
-                sum += radiance;
-            }
         }
-        sum
     }
 
-    /// Queues L_r and L_t of the rays `going_on` where they are wanted and their coefficients are not zero.
+    /// Queues L_r and L_t where they are wanted and their coefficients are not zero.
     fn continue_paths(
         &mut self,
         id: RayId,
         rays: &RayPacket,
-        going_on: u32,
-        touching: &[(usize, Vec<Touching>)],
+        Seen { materials, touching, .. }: &Seen,
         paths: &[&Path; LANES],
         keys: &[Key; LANES],
     ) {
         let world = self.integrator.world;
+        let goes_on = |lane: usize| materials[lane].is_some_and(|it| self.integrator.goes_on(it));
+        let going_on = bits(self.met.lanes())
+            .filter(|&lane| paths[lane].depth > 0 && goes_on(lane))
+            .fold(0_u32, |set, lane| set | 1 << lane);
+        if going_on == 0 {
+            return;
+        }
         let mut interfaces = [Interface::default(); LANES];
         let mut ior = Indices { before: [1.0; LANES], after: [1.0; LANES] };
         for lane in bits(going_on) {
@@ -489,11 +502,11 @@ impl<L: Listener, T: Tally> Walk<'_, '_, L, T> {
         }
         self.bends.mirror(world.level(), rays, self.met);
         let is_asked = |material: &Material| material.fresnel || self.integrator.wants_refraction(material);
-        if bits(going_on).any(|lane| self.met.material(world, lane).is_some_and(is_asked)) {
+        if bits(going_on).any(|lane| materials[lane].is_some_and(is_asked)) {
             self.bends.refract(world.level(), rays, self.met, &ior);
         }
         for lane in bits(going_on) {
-            let Some(material) = self.met.material(world, lane) else { continue };
+            let Some(material) = materials[lane] else { continue };
             let (path, interface) = (paths[lane], interfaces[lane]);
             let arrival = Arrival { lane, id, path, key: keys[lane], interface };
             let (reflect, transmit) = weights(material, self.bends.reflectance(lane));

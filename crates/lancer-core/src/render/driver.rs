@@ -3,7 +3,7 @@
 use super::cover::Cover;
 use super::{Control, Tile};
 use crate::camera::{Camera, CameraError, Projection};
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::film::Image;
 use crate::geometry::RayPacket;
 use crate::integrator::{CameraRays, Line, RayCounts, Scratch, Whitted};
@@ -195,27 +195,24 @@ pub(super) trait Painter: Sync {
     /// they come one by one, in reading order.
     const SIDE: u32;
 
-    /// What every camera ray of some pixels of the region yields, where that is known without tracing them.
+    /// What every camera ray of some pixels of the region yields, where that is known without tracing them. Nothing more is
+    /// told of them.
     fn blank(&self, _pixels: &Region) -> Option<Rgb> {
         None
     }
 
-    /// Finds what camera rays yield, and adds it to the black that is there; something unfinished once the render is
-    /// cancelled.
-    fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts, found: &mut Found);
+    /// Finds what camera rays yield; something unfinished once the render is cancelled.
+    fn trace(&self, rays: &CameraRays, tile: &mut Self::Tile, counts: &mut RayCounts) -> Colors;
 
     /// All rays of the pixel at a column and a row of the image were traced.
     fn end_pixel(&self, _x: u32, _y: u32, _mean: [f32; 3], _tile: &mut Self::Tile) {}
 
     /// All pixels of a tile, at its place in the region, are done.
-    fn end_tile(&self, _area: &Region, _tile: Self::Tile) {}
+    fn end_tile(&self, _area: &Region, _tile: &Self::Tile) {}
 }
 
 /// The side of the square of pixels whose rays fill a packet.
 pub(super) const BLOCK: u32 = 4;
-
-/// What each of some camera rays yields.
-pub(super) type Found = [Rgb; RayPacket::LANES];
 
 /// Paints what camera rays see.
 struct RadiancePainter<'w> {
@@ -238,8 +235,8 @@ impl Painter for RadiancePainter<'_> {
         self.integrator.background().filter(|_| !self.cover.holds(pixels))
     }
 
-    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, found: &mut Found) {
-        self.integrator.add_radiances(rays, &self.media, scratch, counts, found);
+    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts) -> Colors {
+        self.integrator.radiances(rays, &self.media, scratch, counts)
     }
 }
 
@@ -262,10 +259,12 @@ impl Painter for OcclusionPainter<'_> {
         (!self.cover.holds(pixels)).then_some(Rgb::WHITE)
     }
 
-    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts, found: &mut Found) {
-        for (found, occlusion) in found.iter_mut().zip(self.integrator.occlusions(rays, scratch, counts)) {
-            *found = Rgb::grey(occlusion);
+    fn trace(&self, rays: &CameraRays, scratch: &mut Scratch, counts: &mut RayCounts) -> Colors {
+        let mut found = Colors::default();
+        for (lane, occlusion) in self.integrator.occlusions(rays, scratch, counts).into_iter().enumerate() {
+            found.put(lane, Rgb::grey(occlusion));
         }
+        found
     }
 }
 
@@ -292,14 +291,39 @@ impl<P: Painter> Job<'_, P> {
     /// Traces a tile into the film. Returns the rays that it took; none where the render was cancelled or a
     /// thread panicked.
     fn tile(&self, area: Region) -> Option<RayCounts> {
+        if self.is_stopped() {
+            return None;
+        }
         let mut counts = RayCounts::default();
+        let pixels = match self.blank(&area, &mut counts) {
+            Some(mean) => vec![mean; area.width as usize * area.height as usize],
+            None => self.paint_tile(&area, &mut counts)?,
+        };
+        let tile = Tile { x: area.x, y: area.y, width: area.width, height: area.height, pixels };
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.put(tile.x, tile.y, tile.width, &tile.pixels);
+        drop(film);
+        (self.control.on_tile)(&tile, &counts);
+        Some(counts)
+    }
+
+    /// The mean of each of some pixels of the region, where no ray is needed to know it; these are counted all the same.
+    fn blank(&self, area: &Region, counts: &mut RayCounts) -> Option<[f32; 3]> {
+        let radiance = self.painter.blank(area)?;
+        let subpixels = self.frame.samples * self.frame.samples;
+        counts.primary += u64::from(area.width) * u64::from(area.height) * u64::from(subpixels);
+        Some(mean((0..subpixels).fold(Rgb::BLACK, |sum, _| sum + radiance), subpixels))
+    }
+
+    /// Traces a tile. Returns its pixels; none where the render was cancelled or a thread panicked.
+    fn paint_tile(&self, area: &Region, counts: &mut RayCounts) -> Option<Vec<[f32; 3]>> {
         let mut kept = self.painter.begin_tile();
         let mut pixels = vec![[0.0; 3]; area.width as usize * area.height as usize];
         let mut work = Work::default();
-        for block in tiles_of(&area, P::SIDE) {
+        for block in tiles_of(area, P::SIDE) {
             let place = Region { x: area.x + block.x, y: area.y + block.y, ..block };
             // After a panic what is kept and the counts are dropped with the tile.
-            let trace = AssertUnwindSafe(|| self.block(&place, &mut work, &mut kept, &mut counts));
+            let trace = AssertUnwindSafe(|| self.block(&place, &mut work, &mut kept, counts));
             match catch_unwind(trace) {
                 Ok(painted) => {
                     painted?;
@@ -318,13 +342,8 @@ impl<P: Painter> Job<'_, P> {
                 }
             }
         }
-        let tile = Tile { x: area.x, y: area.y, width: area.width, height: area.height, pixels };
-        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
-        film.put(tile.x, tile.y, tile.width, &tile.pixels);
-        drop(film);
-        self.painter.end_tile(&area, kept);
-        (self.control.on_tile)(&tile, &counts);
-        Some(counts)
+        self.painter.end_tile(area, &kept);
+        Some(pixels)
     }
 
     /// A part of the region, in coordinates of the image.
@@ -343,18 +362,14 @@ impl<P: Painter> Job<'_, P> {
         if self.is_stopped() {
             return None;
         }
-        let subpixels = self.frame.samples * self.frame.samples;
+        if let Some(mean) = self.blank(place, counts) {
+            work.means.fill(mean);
+            return Some(());
+        }
         let area = self.in_image(place);
         let Region { x, y, width, height } = area;
-        if let Some(radiance) = self.painter.blank(place) {
-            counts.primary += u64::from(width * height * subpixels);
-            work.means.fill(mean(std::iter::repeat_n(radiance, subpixels as usize)));
-        } else {
-            self.trace_block(&area, work, kept, counts)?;
-            for (pixel, found) in work.means.iter_mut().enumerate() {
-                *found = mean(work.radiances.iter().map(|radiances| radiances[pixel]));
-            }
-        }
+        self.trace_block(&area, work, kept, counts)?;
+        work.find_means();
         let pixels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
         for ((x, y), &mean) in pixels.zip(&work.means) {
             self.painter.end_pixel(x, y, mean, kept);
@@ -372,20 +387,17 @@ impl<P: Painter> Job<'_, P> {
     ) -> Option<()> {
         let Frame { projection, samples, lines, .. } = &self.frame;
         let Region { x, y, width, height } = *area;
-        radiances.resize((samples * samples) as usize, Found::default());
+        radiances.resize((samples * samples) as usize, Colors::default());
         // Rays of neighbouring subpixels go much the same way, so squares of them are traced together.
         for rows in lines[..(height * samples) as usize].chunks(P::SIDE as usize) {
             for columns in lines[..(width * samples) as usize].chunks(P::SIDE as usize) {
                 rays.aim(projection, (x, y), *samples, rows, columns);
-                let mut found = Found::default();
-                self.painter.trace(rays, kept, counts, &mut found);
-                let mut found = found.iter();
-                for row in rows {
-                    for (column, found) in columns.iter().zip(&mut found) {
-                        let pixel = (row.pixel * width + column.pixel) as usize;
-                        let subpixel = (row.subpixel * samples + column.subpixel) as usize;
-                        radiances[subpixel][pixel] = *found;
-                    }
+                let found = self.painter.trace(rays, kept, counts);
+                let subpixels = rows.iter().flat_map(|row| columns.iter().map(move |column| (row, column)));
+                for (lane, (row, column)) in subpixels.enumerate() {
+                    let pixel = (row.pixel * width + column.pixel) as usize;
+                    let subpixel = (row.subpixel * samples + column.subpixel) as usize;
+                    radiances[subpixel].put(pixel, found.at(lane));
                 }
                 // Afterwards: what was cancelled on its way is unfinished.
                 if self.is_stopped() {
@@ -406,16 +418,29 @@ impl<P: Painter> Job<'_, P> {
 struct Work {
     rays: CameraRays,
     /// By subpixel, then by pixel of a block.
-    radiances: Vec<Found>,
+    radiances: Vec<Colors>,
     /// The means of the block in hand, by pixel in reading order.
     means: [[f32; 3]; RayPacket::LANES],
 }
 
-/// The mean of some radiances, which are added in their order.
-fn mean(radiances: impl ExactSizeIterator<Item = Rgb>) -> [f32; 3] {
-    let scale = 1.0 / radiances.len() as f64;
-    let sum = radiances.fold(Rgb::BLACK, |sum, radiance| sum + radiance);
-    (sum * scale).to_array().map(|channel| channel as f32)
+impl Work {
+    /// Finds the means of the block's pixels, whose subpixels are added in their order.
+    fn find_means(&mut self) {
+        let mut sums = Colors::default();
+        for radiances in &self.radiances {
+            for pixel in 0..RayPacket::LANES {
+                sums.put(pixel, sums.at(pixel) + radiances.at(pixel));
+            }
+        }
+        for (pixel, found) in self.means.iter_mut().enumerate() {
+            *found = mean(sums.at(pixel), self.radiances.len() as u32);
+        }
+    }
+}
+
+/// The mean of so many radiances, by their sum.
+fn mean(sum: Rgb, count: u32) -> [f32; 3] {
+    (sum * (1.0 / f64::from(count))).to_array().map(|channel| channel as f32)
 }
 
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {

@@ -17,7 +17,7 @@ pub mod triangle;
 #[cfg(test)]
 mod tests;
 
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::geometry::{DVec2, DVec3, RayPacket, Vectors, packet};
 
 /// Where a ray meets a shape.
@@ -54,7 +54,7 @@ pub(crate) struct SurfacePoints {
     pub(crate) geometric_normal: Vectors,
     pub(crate) shading_normal: Vectors,
     pub(crate) uv: [[f64; RayPacket::LANES]; 2],
-    pub(crate) vertex_color: Vectors,
+    pub(crate) vertex_color: Colors,
 }
 
 impl SurfacePoints {
@@ -66,7 +66,7 @@ impl SurfacePoints {
             geometric_normal: packet::at(&self.geometric_normal, lane),
             shading_normal: packet::at(&self.shading_normal, lane),
             uv: DVec2::new(self.uv[0][lane], self.uv[1][lane]),
-            vertex_color: packet::at(&self.vertex_color, lane).to_array().into(),
+            vertex_color: self.vertex_color.at(lane),
         }
     }
 
@@ -77,7 +77,7 @@ impl SurfacePoints {
         packet::put(&mut self.geometric_normal, lane, surface.geometric_normal);
         packet::put(&mut self.shading_normal, lane, surface.shading_normal);
         (self.uv[0][lane], self.uv[1][lane]) = (surface.uv.x, surface.uv.y);
-        packet::put(&mut self.vertex_color, lane, surface.vertex_color.to_array().into());
+        self.vertex_color.put(lane, surface.vertex_color);
     }
 }
 
@@ -110,6 +110,11 @@ impl Hits {
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, hit: Hit) {
         (self.t[lane], self.primitive[lane]) = (hit.t, hit.primitive);
+    }
+
+    #[inline]
+    pub(crate) fn put_found(&mut self, lane: usize, hit: Option<Hit>) {
+        self.put(lane, hit.unwrap_or(Hit::NONE));
     }
 }
 

@@ -259,7 +259,7 @@ pub(crate) fn surfaces(
         let colors = Corners::gather(mesh, triangles, &data.colors);
         for lane in 0..LANES {
             let color = interpolate(packet::at(&weights, lane), colors.lane(lane).map(widened));
-            packet::put(&mut surfaces.vertex_color, lane, color);
+            surfaces.vertex_color.put(lane, color.to_array().into());
         }
     }
 }

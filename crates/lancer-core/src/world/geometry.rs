@@ -1,13 +1,12 @@
 //! What an object is made of, in its canonical space.
 
 use crate::accel::triangles::TriangleTree;
-use crate::accel::{Aabb, KdTree, Primitives, Tally};
+use crate::accel::{Aabb, KdTree, Primitives, Tally, bits};
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
 use crate::shape::triangle::{Canonical, Nearest};
 use crate::shape::{Hit, Hits, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
-use crate::world;
 use std::sync::Arc;
 
 const LANES: usize = RayPacket::LANES;
@@ -167,37 +166,31 @@ impl PreparedMesh {
 }
 
 impl Geometry {
-    /// The surfaces at hits of a packet, by lane: each as [`Geometry::surface`] finds it, and where there is no hit,
-    /// nothing of use. Texture coordinates that cost much are left out unless `with_uv`.
+    /// The surfaces at hits of a packet, by lane, each as [`Geometry::surface`] finds it. Texture coordinates that cost much
+    /// are left out unless `with_uv`, and where a lane is not among `lanes`.
     #[inline(always)]
     pub(super) fn surfaces(
         self,
         rays: &RayPacket,
-        hits: &[Option<world::Hit>; LANES],
+        hits: &Hits,
+        lanes: u32,
         meshes: &[Arc<PreparedMesh>],
         with_uv: bool,
         surfaces: &mut SurfacePoints,
     ) {
-        // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
-        let Some(any) = hits.iter().flatten().next() else { return };
-        let mut local_hits = Hits::NONE;
-        for (lane, hit) in hits.iter().enumerate() {
-            let world::Hit { t, primitive, .. } = hit.unwrap_or(*any);
-            local_hits.put(lane, Hit { t, primitive });
-        }
         match self {
-            Self::Sphere => plain_surfaces(rays, &local_hits, sphere::plain_surface, surfaces),
-            Self::Cube => plain_surfaces(rays, &local_hits, cube::plain_surface, surfaces),
-            Self::Cylinder { .. } => plain_surfaces(rays, &local_hits, cylinder::plain_surface, surfaces),
-            Self::Plane => plain_surfaces(rays, &local_hits, plane::plain_surface, surfaces),
+            Self::Sphere => plain_surfaces(rays, hits, sphere::plain_surface, surfaces),
+            Self::Cube => plain_surfaces(rays, hits, cube::plain_surface, surfaces),
+            Self::Cylinder { .. } => plain_surfaces(rays, hits, cylinder::plain_surface, surfaces),
+            Self::Plane => plain_surfaces(rays, hits, plane::plain_surface, surfaces),
             Self::Mesh(index) => {
                 let mesh = &meshes[index as usize].mesh;
-                return triangle::surfaces(rays, mesh, &local_hits.primitive, surfaces);
+                return triangle::surfaces(rays, mesh, &hits.primitive, surfaces);
             }
         }
         if with_uv {
-            for lane in (0..LANES).filter(|&lane| hits[lane].is_some()) {
-                let uv = self.uv(packet::at(&surfaces.point, lane), local_hits.primitive[lane]);
+            for lane in bits(lanes) {
+                let uv = self.uv(packet::at(&surfaces.point, lane), hits.primitive[lane]);
                 (surfaces.uv[0][lane], surfaces.uv[1][lane]) = (uv.x, uv.y);
             }
         }

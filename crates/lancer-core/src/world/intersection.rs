@@ -1,8 +1,8 @@
 //! A hit with everything that shading wants to know of it.
 
-use super::{Hit, Interface, Media, Object, ObjectId, Touching, World};
+use super::{Hit, Hits, Interface, Media, Object, ObjectId, Touching, World};
 use crate::accel::bits;
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::geometry::error::{ray_from_surface, segment_from_surface, stands_off};
 use crate::geometry::packet::TOGETHER;
 use crate::geometry::{DVec2, DVec3, Placement, Ray, RayPacket, Vectors, packet};
@@ -108,13 +108,6 @@ impl Intersection {
     }
 }
 
-/// What a surface reflects: its material, and S, its colour there.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Look<'w> {
-    pub(crate) material: &'w Material,
-    pub(crate) color: Rgb,
-}
-
 /// The surfaces at hits of a packet, lane by lane as vector instructions want them; where there is no hit, nothing of use.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Intersections {
@@ -122,7 +115,9 @@ pub(crate) struct Intersections {
     pub(crate) surfaces: SurfacePoints,
     /// See [`Intersection::from_inside`].
     pub(crate) from_inside: [bool; LANES],
-    hits: [Option<Hit>; LANES],
+    /// S, the surfaces' colours, where they have been looked at.
+    pub(crate) colors: Colors,
+    hits: Hits,
     /// Memory for the rays in an object's space.
     local: RayPacket,
 }
@@ -131,54 +126,42 @@ impl Intersections {
     /// Finds the surfaces at hits of a packet, each as [`World::intersection`] finds it, in place of those that were
     /// there: they are too large to be handed on. Unless `with_uv`, texture coordinates may be left out where there is no
     /// texture.
-    pub(crate) fn find(
-        &mut self,
-        world: &World,
-        rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
-        with_uv: bool,
-    ) {
-        self.hits = *hits;
-        let mut found = 0;
-        for (lane, hit) in hits.iter().enumerate() {
-            let Some(hit) = hit.filter(|_| found >> lane & 1 == 0) else { continue };
-            let alike = hits.each_ref().map(|other| other.filter(|other| other.object == hit.object));
-            let lanes = (0..LANES).fold(0, |set, lane| set | u32::from(alike[lane].is_some()) << lane);
+    pub(crate) fn find(&mut self, world: &World, rays: &RayPacket, hits: &Hits, with_uv: bool) {
+        self.hits.clone_from(hits);
+        let all = hits.lanes();
+        let mut open = all;
+        while let Some(hit) = bits(open).next().and_then(|lane| hits.at(lane)) {
+            let lanes = hits.on(hit.object);
             let object = world.object(hit.object);
             if lanes.count_ones() < TOGETHER {
                 for lane in bits(lanes) {
-                    if let Some(hit) = hits[lane] {
+                    if let Some(hit) = hits.at(lane) {
                         self.put(lane, &world.intersection(&rays.ray(lane), &hit));
                     }
                 }
-            } else if found == 0 {
-                self.find_on(world, object, rays, &alike, with_uv);
+            } else if open == all {
+                self.find_on(world, object, rays, lanes, with_uv);
             } else {
-                let mut others = Self::default();
-                others.find_on(world, object, rays, &alike, with_uv);
+                let mut others = Self { hits: hits.clone(), ..Self::default() };
+                others.find_on(world, object, rays, lanes, with_uv);
                 for lane in bits(lanes) {
                     self.surfaces.put(lane, &others.surfaces.at(lane));
                     self.from_inside[lane] = others.from_inside[lane];
                 }
             }
-            found |= lanes;
+            open &= !lanes;
         }
     }
 
-    /// The surfaces at hits with one object.
-    fn find_on(
-        &mut self,
-        world: &World,
-        object: &Object,
-        rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
-        with_uv: bool,
-    ) {
-        let Self { surfaces, from_inside, local, .. } = self;
+    /// The surfaces at hits with one object, those in `lanes`; nothing of use in the others.
+    fn find_on(&mut self, world: &World, object: &Object, rays: &RayPacket, lanes: u32, with_uv: bool) {
+        let Self { surfaces, from_inside, local, hits, .. } = self;
         let with_uv = with_uv || world.material(object.material).color.wants_uv();
         dispatch!(world.level, _simd => {
             object.placement.rays_to_object(rays, local);
-            object.geometry.surfaces(local, hits, &world.meshes, with_uv, surfaces);
+            // Lanes without a hit get one of the others': what stood there before may become so small as to be slow.
+            let hits = hits.on_object(lanes);
+            object.geometry.surfaces(local, &hits, lanes, &world.meshes, with_uv, surfaces);
             for (lane, from_inside) in from_inside.iter_mut().enumerate() {
                 let surface = surfaces.at(lane);
                 *from_inside = is_from_inside(&surface, &local.ray(lane));
@@ -190,7 +173,7 @@ impl Intersections {
     /// Puts another hit of the same ray, and its surface, in the place of that which was there.
     pub(crate) fn put(&mut self, lane: usize, at: &Intersection) {
         let &Intersection { t, object, primitive, from_inside, .. } = at;
-        self.hits[lane] = Some(Hit { t, object, primitive });
+        self.hits.put(lane, Some(Hit { t, object, primitive }));
         self.from_inside[lane] = from_inside;
         let surface = SurfacePoint {
             point: at.point,
@@ -205,15 +188,15 @@ impl Intersections {
 
     /// The rays that hit, a bit for each.
     pub(crate) fn lanes(&self) -> u32 {
-        (0..LANES).fold(0, |set, lane| set | u32::from(self.hits[lane].is_some()) << lane)
+        self.hits.lanes()
     }
 
     /// What a ray hits.
     #[inline]
     pub(crate) fn at(&self, world: &World, lane: usize) -> Option<Intersection> {
-        self.hits[lane].as_ref().map(|hit| {
+        self.hits.at(lane).map(|hit| {
             let object = world.object(hit.object);
-            Intersection::at(object, hit, &self.surfaces.at(lane), self.from_inside[lane])
+            Intersection::at(object, &hit, &self.surfaces.at(lane), self.from_inside[lane])
         })
     }
 
@@ -226,7 +209,7 @@ impl Intersections {
         media: &Media,
         touching: &[Touching],
     ) -> Interface {
-        let (Some(hit), Some(material)) = (self.hits[lane], self.material(world, lane)) else {
+        let (Some(hit), Some(material)) = (self.hits.at(lane), self.material(world, lane)) else {
             return Interface::default();
         };
         if material.transmit.is_black() {
@@ -237,22 +220,25 @@ impl Intersections {
 
     /// The face that a ray hits.
     pub(crate) fn face(&self, lane: usize) -> Option<Face> {
-        self.hits[lane].map(|Hit { object, primitive, .. }| Face { object, primitive })
+        self.hits.at(lane).map(|Hit { object, primitive, .. }| Face { object, primitive })
     }
 
     /// The material of what a ray hits.
     pub(crate) fn material<'w>(&self, world: &'w World, lane: usize) -> Option<&'w Material> {
-        self.hits[lane].map(|hit| world.material(world.object(hit.object).material))
+        self.hits.at(lane).map(|hit| world.material(world.object(hit.object).material))
     }
 
-    /// The same, and its colour there.
-    #[inline]
-    pub(crate) fn look<'w>(&self, world: &'w World, lane: usize) -> Option<Look<'w>> {
-        let material = self.material(world, lane)?;
-        let [u, v] = &self.surfaces.uv;
-        let vertex_color: Rgb = packet::at(&self.surfaces.vertex_color, lane).to_array().into();
-        let color = material.color.color_at(DVec2::new(u[lane], v[lane])) * vertex_color;
-        Some(Look { material, color })
+    /// Looks at what all rays hit: finds the materials, and the colours of the surfaces.
+    pub(crate) fn look<'w>(&mut self, world: &'w World) -> [Option<&'w Material>; LANES] {
+        let mut materials = [None; LANES];
+        for (lane, looked_at) in materials.iter_mut().enumerate() {
+            let Some(material) = self.material(world, lane) else { continue };
+            let SurfacePoints { uv: [u, v], vertex_color, .. } = &self.surfaces;
+            let color = material.color.color_at(DVec2::new(u[lane], v[lane])) * vertex_color.at(lane);
+            self.colors.put(lane, color);
+            *looked_at = Some(material);
+        }
+        materials
     }
 
     /// See [`Intersection::spawn`].

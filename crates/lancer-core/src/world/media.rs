@@ -3,7 +3,7 @@
 //! Dielectrics may be nested, may overlap and may touch. The medium is that of the object entered last; objects
 //! are remembered one by one, so that leaving an outer one while inside an inner one changes nothing.
 
-use super::{Hit, Intersection, Intersections, ObjectId, PacketScratch, World};
+use super::{Hit, Hits, Intersection, Intersections, ObjectId, PacketScratch, World};
 use crate::accel::{Tally, Uncounted, bits};
 use crate::geometry::error::leave_surface;
 use crate::geometry::packet::TOGETHER;
@@ -165,7 +165,7 @@ impl World {
     pub(crate) fn seen(
         &self,
         rays: &RayPacket,
-        hits: &[Option<Hit>; LANES],
+        hits: &Hits,
         with_uv: bool,
         met: &mut Intersections,
         scratch: &mut PacketScratch,

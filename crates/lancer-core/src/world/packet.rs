@@ -2,13 +2,13 @@
 
 use super::geometry::Geometry;
 use super::sheaf::Sheaf;
-use super::{Face, Hit, Object, ObjectId, ObjectIndex, World};
+use super::{Face, Hits, Object, ObjectId, ObjectIndex, World};
 use crate::accel::bvh::Child;
 use crate::accel::triangles::{Beam, DONE, Lane, NarrowPacket, ReadyRays, Visitor, walk_packet};
 use crate::accel::{Uncounted, bits};
 use crate::geometry::packet::TOGETHER;
 use crate::geometry::{Placement, Ray, RayPacket};
-use crate::shape::{self, Hits, cube, cylinder, plane, sphere};
+use crate::shape::{self, cube, cylinder, plane, sphere};
 use fearless_simd::{Level, dispatch};
 
 const LANES: usize = RayPacket::LANES;
@@ -16,31 +16,19 @@ const LANES: usize = RayPacket::LANES;
 impl World {
     /// The nearest hits of the rays `wanted` of a packet, a bit for each: what [`World::intersect`] finds, found
     /// faster where the rays go much the same way.
-    pub fn intersect_packet(
-        &self,
-        rays: &RayPacket,
-        wanted: u32,
-        scratch: &mut PacketScratch,
-    ) -> [Option<Hit>; LANES] {
-        let mut best: [Option<Hit>; LANES] = [None; LANES];
+    pub fn intersect_packet(&self, rays: &RayPacket, wanted: u32, scratch: &mut PacketScratch) -> Hits {
+        let mut best = Hits::NONE;
         // A hit at the same t is looked at too: the lower object is to win.
         let mut up_to = rays.t_max;
         let PacketScratch { narrow, local } = scratch;
         local.frame = None;
         let visited = self.visit_objects_of_packet(rays, wanted, narrow, |id, object, lanes, t_max| {
             let hits = object.intersect_packet(rays, local, &up_to, lanes, self);
-            for lane in bits(lanes) {
-                let Some(shape::Hit { t, primitive }) = hits[lane] else { continue };
-                if best[lane].is_none_or(|best| (t, id) < (best.t, best.object)) {
-                    best[lane] = Some(Hit { t, object: id, primitive });
-                    t_max[lane] = t;
-                    up_to[lane] = t.next_up();
-                }
-            }
+            dispatch!(self.level, _simd => best.keep_nearer(id, &hits, lanes, t_max, &mut up_to));
             0
         });
         for lane in bits(wanted & !visited) {
-            best[lane] = self.intersect(&rays.ray(lane));
+            best.put(lane, self.intersect(&rays.ray(lane)));
         }
         best
     }
@@ -118,11 +106,10 @@ impl World {
         if left == 0 {
             return wanted;
         }
-        let rays = RayPacket { t_max, ..rays.clone() };
         if self.bounded.len() <= Self::FEW_FOR_PACKETS {
             // What is all there is looks at its own bounds.
             let sheaf = (self.objects.len() > 1)
-                .then(|| dispatch!(self.level, simd => Sheaf::around(simd, &rays, left)));
+                .then(|| dispatch!(self.level, simd => Sheaf::around(simd, rays, &t_max, left)));
             for (&id, bounds) in self.bounded.iter().zip(&self.boxes) {
                 if left != 0 && sheaf.as_ref().is_none_or(|sheaf| sheaf.may_meet(bounds)) {
                     left = visit(id, left, &mut t_max);
@@ -130,6 +117,7 @@ impl World {
             }
             return wanted;
         }
+        let rays = RayPacket { t_max, ..rays.clone() };
         let mut out_of_range = 0;
         dispatch!(self.level, simd => {
             packet.prepare(&rays, &self.bounds);
@@ -209,7 +197,7 @@ impl Local {
 }
 
 impl Object {
-    /// The nearest hits of the rays `wanted`, each with t in (0, `up_to`).
+    /// The nearest hits of the rays `wanted`, each with t in (0, `up_to`); nothing of use in the other lanes.
     fn intersect_packet(
         &self,
         rays: &RayPacket,
@@ -217,23 +205,20 @@ impl Object {
         up_to: &[f64; LANES],
         wanted: u32,
         world: &World,
-    ) -> [Option<shape::Hit>; LANES] {
+    ) -> shape::Hits {
         if let Some(tree) = self.geometry.triangle_tree(&world.meshes) {
             local.prepare(rays, up_to, self, world);
             return tree.intersect_packet(&local.ready, wanted);
         }
-        let mut hits = [None; LANES];
         if wanted.count_ones() >= TOGETHER
             && let Some(nearest) = self.nearest_on_shape(world.level, rays, up_to)
         {
-            for lane in bits(wanted) {
-                hits[lane] = nearest.at(lane).found();
-            }
-            return hits;
+            return nearest;
         }
+        let mut hits = shape::Hits::NONE;
         for lane in bits(wanted) {
             let ray = Ray { t_max: up_to[lane], ..self.placement.ray_to_object(&rays.ray(lane)) };
-            hits[lane] = self.geometry.intersect(&ray, &world.meshes, &Uncounted);
+            hits.put_found(lane, self.geometry.intersect(&ray, &world.meshes, &Uncounted));
         }
         hits
     }
@@ -266,7 +251,7 @@ impl Object {
     }
 
     /// Where each ray meets a canonical shape first, infinite where that is not before `up_to`; none of a mesh.
-    fn nearest_on_shape(&self, level: Level, rays: &RayPacket, up_to: &[f64; LANES]) -> Option<Hits> {
+    fn nearest_on_shape(&self, level: Level, rays: &RayPacket, up_to: &[f64; LANES]) -> Option<shape::Hits> {
         let place = &self.placement;
         Some(match self.geometry {
             Geometry::Sphere => dispatch!(level, _simd => nearest(place, rays, up_to, sphere::nearest)),
@@ -287,8 +272,8 @@ fn nearest(
     rays: &RayPacket,
     up_to: &[f64; LANES],
     of_shape: impl Fn(&Ray) -> shape::Hit,
-) -> Hits {
-    let mut nearest = Hits::NONE;
+) -> shape::Hits {
+    let mut nearest = shape::Hits::NONE;
     for (lane, &t_max) in up_to.iter().enumerate() {
         nearest.put(lane, of_shape(&Ray { t_max, ..placement.ray_to_object(&rays.ray(lane)) }));
     }

@@ -18,14 +18,14 @@ pub(super) struct Sheaf {
 }
 
 impl Sheaf {
-    /// Around the rays `wanted`, of which there is one. Those with a coordinate that is no number do not count: they
+    /// Around the rays `wanted`, of which there is one, each up to its `t_max`. Those with a coordinate that is no number do not count: they
     /// meet nothing.
     #[inline(always)]
-    pub(super) fn around<S: Simd>(simd: S, rays: &RayPacket, wanted: u32) -> Self {
+    pub(super) fn around<S: Simd>(simd: S, rays: &RayPacket, t_max: &[f64; LANES], wanted: u32) -> Self {
         Self {
             origin: bounds(simd, &rays.origin, wanted),
             direction: bounds(simd, &rays.direction, wanted),
-            t_max: interval(simd, &rays.t_max, wanted).1,
+            t_max: interval(simd, t_max, wanted).1,
         }
     }
 
@@ -90,7 +90,7 @@ mod tests {
     use fearless_simd::{Level, dispatch};
 
     fn around(level: Level, rays: &RayPacket, wanted: u32) -> Sheaf {
-        dispatch!(level, simd => Sheaf::around(simd, rays, wanted))
+        dispatch!(level, simd => Sheaf::around(simd, rays, &rays.t_max, wanted))
     }
 
     fn levels() -> impl Iterator<Item = Level> {

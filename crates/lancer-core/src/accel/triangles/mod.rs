@@ -27,8 +27,8 @@ use super::tally::{Tally, Uncounted};
 use crate::cancel::CancelToken;
 use crate::geometry::{Bounds, DirectionFan, Ray, RayPacket};
 use crate::mesh::Mesh;
-use crate::shape::Hit;
 use crate::shape::triangle::Nearest;
+use crate::shape::{Hit, Hits};
 use block::{BLOCK, Block};
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
@@ -154,13 +154,13 @@ impl TriangleTree {
         })
     }
 
-    /// The nearest hits of the rays `wanted` of a packet, each as [`TriangleTree::intersect`] would find it. They have been
+    /// The nearest hits of the rays `wanted` of a packet, and of no others, each as [`TriangleTree::intersect`] would find it. They have been
     /// made ready for bounds that hold those of the tree.
-    pub(crate) fn intersect_packet(&self, rays: &ReadyRays, wanted: u32) -> [Option<Hit>; RayPacket::LANES] {
+    pub(crate) fn intersect_packet(&self, rays: &ReadyRays, wanted: u32) -> Hits {
         let (mut hits, left_over) =
             dispatch!(self.level, simd => packet::intersect(simd, self, rays, wanted));
         for lane in bits(left_over) {
-            hits[lane] = self.intersect(&rays.rays.ray(lane), &Uncounted);
+            hits.put_found(lane, self.intersect(&rays.rays.ray(lane), &Uncounted));
         }
         hits
     }

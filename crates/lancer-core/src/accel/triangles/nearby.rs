@@ -8,7 +8,7 @@ use super::single::Candidate;
 use crate::accel::bits;
 use crate::geometry::RayPacket;
 use crate::geometry::packet::TOGETHER;
-use crate::shape::Hit;
+use crate::shape::Hits;
 use crate::shape::triangle::{self, Corners, Nearest};
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
@@ -92,8 +92,8 @@ impl Nearby {
         rays: &RayPacket,
         ends: &Lane,
         wanted: u32,
-    ) -> [Option<Hit>; LANES] {
-        let mut hits = [None; LANES];
+    ) -> Hits {
+        let mut hits = Hits::NONE;
         let infinite = f32x16::splat(simd, f32::INFINITY);
         let some =
             f32x16::load_array_ref(simd, &self.earliest).simd_lt(infinite).to_bitmask() as u32 & wanted;
@@ -108,11 +108,7 @@ impl Nearby {
                 triangles.put(lane, &triangle);
                 ids[lane] = id;
             }
-            let nearest = triangle::nearest(rays, &triangles);
-            for lane in bits(single) {
-                let hit = Hit { t: nearest[lane], primitive: ids[lane] };
-                hits[lane] = (hit.t < f64::INFINITY).then_some(hit);
-            }
+            hits = Hits { t: triangle::nearest(rays, &triangles), primitive: ids };
         }
         for lane in bits(some & !single) {
             let ray = rays.ray(lane);
@@ -125,7 +121,7 @@ impl Nearby {
                 let (id, triangle) = tree.triangle_at(other.place);
                 nearest.consider(id, &triangle);
             }
-            hits[lane] = nearest.found();
+            hits.put_found(lane, nearest.found());
         }
         hits
     }

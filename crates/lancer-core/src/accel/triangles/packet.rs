@@ -17,7 +17,7 @@ use crate::accel::bits;
 use crate::accel::bvh::{Child, WideNode};
 use crate::accel::tally::Uncounted;
 use crate::geometry::{Bounds, RayPacket};
-use crate::shape::Hit;
+use crate::shape::Hits;
 use crate::shape::triangle::Canonical;
 use arrayvec::ArrayVec;
 use fearless_simd::prelude::*;
@@ -395,12 +395,7 @@ fn test<S: Simd>(
 
 /// The nearest hits of the rays `wanted`, and which rays are left to be searched one by one.
 #[inline(always)]
-pub(super) fn intersect<S: Simd>(
-    simd: S,
-    tree: &TriangleTree,
-    rays: &ReadyRays,
-    wanted: u32,
-) -> ([Option<Hit>; LANES], u32) {
+pub(super) fn intersect<S: Simd>(simd: S, tree: &TriangleTree, rays: &ReadyRays, wanted: u32) -> (Hits, u32) {
     let ReadyRays { rays, narrow: packet } = rays;
     let (mut open, mut left_over) = (packet.ready & wanted, packet.out_of_range & wanted);
     let mut search = NearestSearch { simd, tree, packet, nearby: Nearby::new() };

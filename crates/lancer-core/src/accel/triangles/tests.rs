@@ -177,10 +177,16 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
                 let nearest = tree.intersect_packet(&ready, wanted);
                 let occluded = tree.occluded_packet(&ready, wanted, &[None; RayPacket::LANES]);
                 assert_eq!(occluded & !wanted, 0);
-                for (lane, nearest) in nearest.into_iter().enumerate() {
+                for lane in 0..RayPacket::LANES {
                     let is_wanted = wanted >> lane & 1 == 1;
                     let alone = tree.intersect(&packet.ray(lane), &Uncounted).filter(|_| is_wanted);
-                    assert_eq!(nearest, alone, "{:?} {:?} {wanted:x}", tree.level, packet.ray(lane));
+                    assert_eq!(
+                        nearest.at(lane).found(),
+                        alone,
+                        "{:?} {:?} {wanted:x}",
+                        tree.level,
+                        packet.ray(lane)
+                    );
                     assert_eq!(
                         occluded >> lane & 1 == 1,
                         alone.is_some(),

@@ -18,12 +18,12 @@ mod names;
 
 pub use names::{UnknownPass, light_names, select};
 
-use super::driver::{Found, Frame, Painter};
+use super::driver::{Frame, Painter};
 use super::features::seen;
 use super::{Control, Region, Render, RenderError};
 use crate::accel::Visits;
 use crate::camera::Camera;
-use crate::color::Rgb;
+use crate::color::{Colors, Rgb};
 use crate::geometry::{DVec3, Ray};
 use crate::integrator::{CameraRays, RayCounts, Scratch, Whitted};
 use crate::sampling::Key;
@@ -330,10 +330,12 @@ impl Painter for PassPainter<'_> {
     /// One pixel at a time: what is gathered is its own.
     const SIDE: u32 = 1;
 
-    fn trace(&self, rays: &CameraRays, tile: &mut PassTile, counts: &mut RayCounts, found: &mut Found) {
-        for (found, (ray, key)) in found.iter_mut().zip(rays.iter()) {
-            *found = self.trace_one(ray, key, tile, counts);
+    fn trace(&self, rays: &CameraRays, tile: &mut PassTile, counts: &mut RayCounts) -> Colors {
+        let mut found = Colors::default();
+        for (lane, (ray, key)) in rays.iter().enumerate() {
+            found.put(lane, self.trace_one(ray, key, tile, counts));
         }
+        found
     }
 
     fn end_pixel(&self, x: u32, y: u32, mean: [f32; 3], tile: &mut PassTile) {
@@ -378,7 +380,7 @@ impl Painter for PassPainter<'_> {
         tile.visits = Visits::default();
     }
 
-    fn end_tile(&self, area: &Region, tile: PassTile) {
+    fn end_tile(&self, area: &Region, tile: &PassTile) {
         let mut layers = self.layers.lock().unwrap_or_else(PoisonError::into_inner);
         for (layer, part) in layers.iter_mut().zip(&tile.layers) {
             layer.samples.put(&part.samples, area, self.width);

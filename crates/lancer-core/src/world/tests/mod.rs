@@ -94,9 +94,9 @@ fn packets_find_what_each_of_their_rays_finds_alone() {
                 let occluded =
                     world.occluded_packet(&packet, wanted, &[None; RayPacket::LANES], &mut scratch);
                 assert_eq!(occluded & !wanted, 0);
-                for (lane, nearest) in nearest.into_iter().enumerate() {
+                for lane in 0..RayPacket::LANES {
                     let alone = world.intersect(&packet.ray(lane)).filter(|_| wanted >> lane & 1 == 1);
-                    assert_eq!(nearest, alone, "{accelerator:?} {:?}", packet.ray(lane));
+                    assert_eq!(nearest.at(lane), alone, "{accelerator:?} {:?}", packet.ray(lane));
                     assert_eq!(
                         occluded >> lane & 1 == 1,
                         alone.is_some(),
@@ -142,14 +142,15 @@ fn surfaces_of_a_packet_are_those_of_its_rays() {
                     let direction = first.direction + random.point(spread);
                     packet.set(lane, &Ray { direction, ..first });
                 }
-                let hits = world.intersect_packet(&packet, 0xfff7, &mut Default::default());
-                met.find(&world, &packet, &hits, true);
+                let found = world.intersect_packet(&packet, 0xfff7, &mut Default::default());
+                let hits: [_; RayPacket::LANES] = std::array::from_fn(|lane| found.at(lane));
+                met.find(&world, &packet, &found, true);
                 for (lane, hit) in hits.iter().enumerate() {
                     let ray = packet.ray(lane);
                     let alone = hit.map(|hit| world.intersection(&ray, &hit));
                     assert_eq!(met.at(&world, lane), alone, "{instructions:?} {ray:?}");
                 }
-                met.find(&world, &packet, &hits, false);
+                met.find(&world, &packet, &found, false);
                 for (lane, hit) in hits.iter().enumerate() {
                     let Some(hit) = hit else { continue };
                     let (alone, at) =
