@@ -216,6 +216,21 @@ impl Placement {
         let slack = self.error_in_world(bounds_in_object.magnitude(), DVec3::ZERO);
         Bounds::new(image.min - slack, image.max + slack)
     }
+
+    /// The same around the image of what fills only a part of its box, which is bounded: how far that goes from the box's
+    /// centre in the world, by axis, `reach` tells from the images of half the box's edges.
+    pub(crate) fn bounds_within(
+        &self,
+        bounds_in_object: Bounds,
+        reach: impl FnOnce([DVec3; 3]) -> DVec3,
+    ) -> Bounds {
+        let half = 0.5 * bounds_in_object.extent();
+        let DMat3 { x_axis, y_axis, z_axis } = self.world_from_object;
+        let center = self.point_to_world(bounds_in_object.center());
+        let reach = reach([x_axis * half.x, y_axis * half.y, z_axis * half.z])
+            + self.error_in_world(bounds_in_object.magnitude(), DVec3::ZERO);
+        Bounds::new(center - reach, center + reach)
+    }
 }
 
 /// Rounded operations on a coordinate's way to the world and back: two products of a matrix and a vector, two

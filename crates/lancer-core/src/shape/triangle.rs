@@ -324,7 +324,7 @@ fn flat(ray: &Ray, vertices: &[[f32; 3]; 3], point_error: DVec3) -> (DVec3, Surf
 }
 
 #[inline(always)]
-fn widened([x, y, z]: [f32; 3]) -> DVec3 {
+pub(crate) fn widened([x, y, z]: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(x), f64::from(y), f64::from(z))
 }
 

@@ -116,7 +116,10 @@ impl World {
             .into_par_iter()
             .map(|mesh| match known.get(&address(&mesh)) {
                 Some(&prepared) => Ok(Arc::clone(prepared)),
-                None => Ok(Arc::new(PreparedMesh { index: index_triangles(&mesh, options, cancel)?, mesh })),
+                None => {
+                    let index = index_triangles(&mesh, options, cancel)?;
+                    Ok(Arc::new(PreparedMesh::new(mesh, index)))
+                }
             })
             .collect::<Result<Vec<_>, CompileError>>()?;
         let mut world = Self {
@@ -179,12 +182,13 @@ impl World {
             }
             let id = ObjectId(index as u32);
             let bounds = object.placement.bounds_to_world(object.geometry.bounds(&self.meshes));
-            let aabb = Aabb::around(&bounds);
+            let closest = object.geometry.bounds_in_world(&object.placement, &self.meshes);
+            let aabb = Aabb::around(&closest);
             if bounds.is_finite() && aabb.min.iter().chain(&aabb.max).all(|x| x.is_finite()) {
                 self.bounds = self.bounds.union(bounds);
                 self.bounded.push(id);
                 // Of no use where there are more.
-                let _ = self.boxes.try_push(bounds);
+                let _ = self.boxes.try_push(closest);
                 boxes.push(aabb);
             } else {
                 self.unbounded.push(id);

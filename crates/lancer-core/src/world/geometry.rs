@@ -3,11 +3,12 @@
 use crate::accel::triangles::TriangleTree;
 use crate::accel::{Aabb, KdTree, Primitives, Tally, bits};
 use crate::geometry::error::gamma;
-use crate::geometry::{Bounds, DVec2, DVec3, Ray, RayPacket, packet};
+use crate::geometry::{Bounds, DVec2, DVec3, Placement, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
+use crate::shape::triangle::widened;
 use crate::shape::triangle::{Canonical, Nearest};
 use crate::shape::{Hit, Hits, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 const LANES: usize = RayPacket::LANES;
 
@@ -26,6 +27,26 @@ pub(super) enum Geometry {
 pub(super) struct PreparedMesh {
     pub(super) mesh: Arc<Mesh>,
     pub(super) index: TriangleIndex,
+    /// See [`PreparedMesh::roundness`].
+    roundness: OnceLock<f64>,
+}
+
+impl PreparedMesh {
+    pub(super) fn new(mesh: Arc<Mesh>, index: TriangleIndex) -> Self {
+        Self { mesh, index, roundness: OnceLock::new() }
+    }
+
+    /// How much the ellipsoid that its box holds has to grow to hold the mesh: 1 of a ball, the root of 3 of a cube.
+    fn roundness(&self) -> f64 {
+        *self.roundness.get_or_init(|| {
+            let bounds = self.mesh.bounds();
+            let center = bounds.center();
+            let half = (0.5 * bounds.extent()).max(DVec3::splat(f64::MIN_POSITIVE));
+            let squared = |&position: &[f32; 3]| ((widened(position) - center) / half).length_squared();
+            let largest = self.mesh.data().positions.iter().map(squared).fold(0.0, f64::max);
+            largest.sqrt() * (1.0 + 8.0 * f64::EPSILON)
+        })
+    }
 }
 
 /// What finds the triangles of a mesh.
@@ -71,6 +92,27 @@ impl Geometry {
             Self::Plane => plane::bounds(),
             Self::Mesh(index) => meshes[index as usize].mesh.bounds(),
         }
+    }
+
+    /// A box in the world around its image: closer than that of its own box, where that is turned.
+    pub(super) fn bounds_in_world(self, placement: &Placement, meshes: &[Arc<PreparedMesh>]) -> Bounds {
+        let bounds = self.bounds(meshes);
+        if !bounds.is_finite() {
+            return Bounds::UNBOUNDED;
+        }
+        placement.bounds_within(bounds, |edges| match self {
+            Self::Sphere => length_by_axis(&edges),
+            Self::Cylinder { .. } => length_by_axis(&[edges[0], edges[2]]) + edges[1].abs(),
+            Self::Cube | Self::Plane => sum_by_axis(&edges),
+            Self::Mesh(index) => {
+                let (of_box, of_ball) = (sum_by_axis(&edges), length_by_axis(&edges));
+                // Where they are the same the box is not turned.
+                if of_box == of_ball {
+                    return of_box;
+                }
+                of_box.min(of_ball * meshes[index as usize].roundness())
+            }
+        })
     }
 
     pub(super) fn intersect(
@@ -208,6 +250,17 @@ impl Geometry {
     }
 }
 
+/// The sums of the sizes of some vectors' coordinates.
+fn sum_by_axis(vectors: &[DVec3]) -> DVec3 {
+    vectors.iter().map(|v| v.abs()).sum()
+}
+
+/// The roots of the sums of their squares.
+fn length_by_axis(vectors: &[DVec3]) -> DVec3 {
+    let squares: DVec3 = vectors.iter().map(|v| v * v).sum();
+    DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt())
+}
+
 /// The surfaces of a shape at hits, without texture coordinates: the scalar function, of which the compiler makes vector
 /// code.
 #[inline(always)]
@@ -281,5 +334,87 @@ impl Polygon {
             }
             previous = corner;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Transform;
+    use crate::testing::{Random, ball, soup};
+
+    fn placed(transform: Transform) -> Placement {
+        Placement::new(transform).unwrap()
+    }
+
+    fn meshes() -> Vec<Arc<PreparedMesh>> {
+        let far = Transform::translate(DVec3::new(70.0, -20.0, 5.0));
+        let mut aside = ball(8, 12);
+        for position in &mut aside.positions {
+            let moved = placed(far).point_to_world(widened(*position) * DVec3::new(1.0, 4.0, 0.2));
+            *position = moved.as_vec3().to_array();
+        }
+        let flat = crate::mesh::MeshData {
+            positions: vec![[0.0, 2.0, 0.0], [1.0, 2.0, 0.0], [0.0, 2.0, 3.0]],
+            indices: vec![[0, 1, 2]],
+            ..Default::default()
+        };
+        [Mesh::new(ball(16, 24)).unwrap(), Mesh::new(aside).unwrap(), Mesh::new(flat).unwrap(), soup(3, 50)]
+            .map(|mesh| Arc::new(PreparedMesh::new(Arc::new(mesh), TriangleIndex::None)))
+            .into()
+    }
+
+    /// A point on a shape, often one that is far out.
+    fn point_on(geometry: Geometry, meshes: &[Arc<PreparedMesh>], random: &mut Random) -> DVec3 {
+        let sign = |random: &mut Random| if random.below(2) == 0 { 1.0 } else { -1.0 };
+        match geometry {
+            Geometry::Sphere => random.direction(),
+            Geometry::Cube | Geometry::Plane => DVec3::new(sign(random), sign(random), sign(random)),
+            Geometry::Cylinder { .. } => {
+                let around = random.direction().with_y(0.0).normalize();
+                around + DVec3::Y * sign(random)
+            }
+            Geometry::Mesh(index) => {
+                let positions = &meshes[index as usize].mesh.data().positions;
+                widened(positions[random.below(positions.len())])
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_in_the_world_holds_the_image_and_is_within_that_of_the_box() {
+        let meshes = meshes();
+        let mut random = Random::new(17);
+        let shapes = [Geometry::Sphere, Geometry::Cube, Geometry::Cylinder { capped: true }];
+        let geometries = shapes.into_iter().chain((0..meshes.len() as u32).map(Geometry::Mesh));
+        for geometry in geometries {
+            for _ in 0..200 {
+                let size = [1e-3, 1.0, 1e4][random.below(3)];
+                let placement = placed(random.transform(size, 100.0));
+                let bounds = geometry.bounds_in_world(&placement, &meshes);
+                let image = placement.bounds_to_world(geometry.bounds(&meshes));
+                let slack = image.magnitude() * 1e-12;
+                assert!((bounds.min + slack).cmpge(image.min).all(), "{geometry:?} {bounds:?} {image:?}");
+                assert!((bounds.max - slack).cmple(image.max).all(), "{geometry:?} {bounds:?} {image:?}");
+                for _ in 0..50 {
+                    let point = placement.point_to_world(point_on(geometry, &meshes, &mut random));
+                    let is_inside = point.cmpge(bounds.min).all() & point.cmple(bounds.max).all();
+                    assert!(is_inside, "{geometry:?}: {point} is not in {bounds:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_box_around_a_turned_ball_is_no_larger() {
+        let meshes = meshes();
+        let turned = placed(Transform::rotate(DVec3::new(1.0, 2.0, 3.0), 37.0));
+        for geometry in [Geometry::Sphere, Geometry::Mesh(0)] {
+            let extent = geometry.bounds_in_world(&turned, &meshes).extent();
+            assert!((extent - 2.0).abs().max_element() < 1e-6, "{geometry:?} {extent}");
+        }
+        let about_its_axis = placed(Transform::rotate(DVec3::Y, 45.0));
+        let extent = Geometry::Cylinder { capped: false }.bounds_in_world(&about_its_axis, &meshes).extent();
+        assert!((extent - 2.0).abs().max_element() < 1e-12, "{extent}");
     }
 }
