@@ -5,8 +5,7 @@ use crate::accel::{Aabb, KdTree, Primitives, Tally, bits};
 use crate::geometry::error::gamma;
 use crate::geometry::{Bounds, DVec2, DVec3, Placement, Ray, RayPacket, packet};
 use crate::mesh::Mesh;
-use crate::shape::triangle::widened;
-use crate::shape::triangle::{Canonical, Nearest};
+use crate::shape::triangle::{Canonical, Nearest, widened};
 use crate::shape::{Hit, Hits, SurfacePoint, SurfacePoints, cube, cylinder, plane, sphere, triangle};
 use std::sync::{Arc, OnceLock};
 
@@ -255,10 +254,11 @@ fn sum_by_axis(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().map(|v| v.abs()).sum()
 }
 
-/// The roots of the sums of their squares.
+/// The roots of the sums of their squares, which may themselves be too small for a number.
 fn length_by_axis(vectors: &[DVec3]) -> DVec3 {
-    let squares: DVec3 = vectors.iter().map(|v| v * v).sum();
-    DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt())
+    let largest = vectors.iter().fold(DVec3::splat(f64::MIN_POSITIVE), |largest, v| largest.max(v.abs()));
+    let squares: DVec3 = vectors.iter().map(|v| (v / largest) * (v / largest)).sum();
+    DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt()) * largest
 }
 
 /// The surfaces of a shape at hits, without texture coordinates: the scalar function, of which the compiler makes vector
@@ -402,6 +402,16 @@ mod tests {
                     assert!(is_inside, "{geometry:?}: {point} is not in {bounds:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_box_holds_what_is_too_small_to_be_squared() {
+        let tiny = Transform::scale(DVec3::splat(1e-180));
+        let turned = placed(tiny.then(Transform::rotate(DVec3::Z, 30.0)));
+        for geometry in [Geometry::Sphere, Geometry::Cylinder { capped: true }] {
+            let extent = geometry.bounds_in_world(&turned, &[]).extent();
+            assert!(extent.cmpge(DVec3::splat(2e-180)).all(), "{geometry:?} {extent}");
         }
     }
 
