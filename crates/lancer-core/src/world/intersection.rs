@@ -132,7 +132,6 @@ impl Intersections {
         let mut open = all;
         while let Some(hit) = bits(open).next().and_then(|lane| hits.at(lane)) {
             let lanes = hits.on(hit.object);
-            let object = world.object(hit.object);
             if lanes.count_ones() < TOGETHER {
                 for lane in bits(lanes) {
                     if let Some(hit) = hits.at(lane) {
@@ -140,10 +139,10 @@ impl Intersections {
                     }
                 }
             } else if open == all {
-                self.find_on(world, object, rays, lanes, with_uv);
+                self.find_on(world, hit.object, rays, hits, with_uv);
             } else {
-                let mut others = Self { hits: hits.clone(), ..Self::default() };
-                others.find_on(world, object, rays, lanes, with_uv);
+                let mut others = Self::default();
+                others.find_on(world, hit.object, rays, hits, with_uv);
                 for lane in bits(lanes) {
                     self.surfaces.put(lane, &others.surfaces.at(lane));
                     self.from_inside[lane] = others.from_inside[lane];
@@ -153,9 +152,10 @@ impl Intersections {
         }
     }
 
-    /// The surfaces at hits with one object, those in `lanes`; nothing of use in the others.
-    fn find_on(&mut self, world: &World, object: &Object, rays: &RayPacket, lanes: u32, with_uv: bool) {
-        let Self { surfaces, from_inside, local, hits, .. } = self;
+    /// The surfaces at the hits with one object; nothing of use in the other lanes.
+    fn find_on(&mut self, world: &World, id: ObjectId, rays: &RayPacket, hits: &Hits, with_uv: bool) {
+        let Self { surfaces, from_inside, local, .. } = self;
+        let (object, lanes) = (world.object(id), hits.on(id));
         let with_uv = with_uv || world.material(object.material).color.wants_uv();
         dispatch!(world.level, _simd => {
             object.placement.rays_to_object(rays, local);
