@@ -107,6 +107,12 @@ impl Hits {
         Hit { t: self.t[lane], primitive: self.primitive[lane] }
     }
 
+    /// The rays that hit, a bit for each.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> u32 {
+        (0..RayPacket::LANES).fold(0, |set, lane| set | u32::from(self.t[lane] < f64::INFINITY) << lane)
+    }
+
     #[inline(always)]
     pub(crate) fn put(&mut self, lane: usize, hit: Hit) {
         (self.t[lane], self.primitive[lane]) = (hit.t, hit.primitive);

@@ -9,16 +9,14 @@ const LANES: usize = RayPacket::LANES;
 /// Where each ray of a packet meets the world, lane by lane as vector instructions want it.
 #[derive(Clone, Debug)]
 pub struct Hits {
-    /// Infinite where a ray meets nothing.
-    t: [f64; LANES],
+    nearest: shape::Hits,
+    /// What is hit, where anything is.
     object: [ObjectId; LANES],
-    primitive: [u32; LANES],
 }
 
 impl Hits {
     /// Of rays that meet nothing.
-    pub(super) const NONE: Self =
-        Self { t: [f64::INFINITY; LANES], object: [ObjectId(0); LANES], primitive: [0; LANES] };
+    pub(super) const NONE: Self = Self { nearest: shape::Hits::NONE, object: [ObjectId(0); LANES] };
 
     /// What a ray hits.
     ///
@@ -26,22 +24,21 @@ impl Hits {
     /// Where `lane` is not below [`RayPacket::LANES`].
     #[inline]
     pub fn at(&self, lane: usize) -> Option<Hit> {
-        let hit = Hit { t: self.t[lane], object: self.object[lane], primitive: self.primitive[lane] };
-        (hit.t < f64::INFINITY).then_some(hit)
+        let shape::Hit { t, primitive } = self.nearest.at(lane).found()?;
+        Some(Hit { t, object: self.object[lane], primitive })
     }
 
     /// The rays that hit anything, a bit for each.
     #[inline]
     pub fn lanes(&self) -> u32 {
-        (0..LANES).fold(0, |set, lane| set | u32::from(self.t[lane] < f64::INFINITY) << lane)
+        self.nearest.lanes()
     }
 
     /// Puts what a ray hits in the place of what was there.
     #[inline]
     pub(crate) fn put(&mut self, lane: usize, hit: Option<Hit>) {
-        let Hit { t, object, primitive } =
-            hit.unwrap_or(Hit { t: f64::INFINITY, object: ObjectId(0), primitive: 0 });
-        (self.t[lane], self.object[lane], self.primitive[lane]) = (t, object, primitive);
+        self.nearest.put_found(lane, hit.map(|Hit { t, primitive, .. }| shape::Hit { t, primitive }));
+        self.object[lane] = hit.map_or(ObjectId(0), |hit| hit.object);
     }
 
     /// The rays that hit an object.
@@ -53,12 +50,10 @@ impl Hits {
     /// The hits in some lanes, which are with one object; in the others, one of them.
     #[inline(always)]
     pub(super) fn on_object(&self, lanes: u32) -> shape::Hits {
-        let first = lanes.trailing_zeros() as usize;
+        let first = self.nearest.at(lanes.trailing_zeros() as usize);
         let mut hits = shape::Hits::NONE;
         for lane in 0..LANES {
-            let is_there = lanes >> lane & 1 == 1;
-            hits.t[lane] = if is_there { self.t[lane] } else { self.t[first] };
-            hits.primitive[lane] = if is_there { self.primitive[lane] } else { self.primitive[first] };
+            hits.put(lane, if lanes >> lane & 1 == 1 { self.nearest.at(lane) } else { first });
         }
         hits
     }
@@ -75,12 +70,12 @@ impl Hits {
         up_to: &mut [f64; LANES],
     ) {
         for lane in 0..LANES {
-            let t = hits.t[lane];
-            let is_nearer = (t < self.t[lane]) | ((t == self.t[lane]) & (object < self.object[lane]));
+            let (hit, known) = (hits.at(lane), self.nearest.at(lane));
+            let t = hit.t;
+            let is_nearer = (t < known.t) | ((t == known.t) & (object < self.object[lane]));
             let is_kept = (lanes >> lane & 1 == 1) & (t < f64::INFINITY) & is_nearer;
-            self.t[lane] = if is_kept { t } else { self.t[lane] };
+            self.nearest.put(lane, if is_kept { hit } else { known });
             self.object[lane] = if is_kept { object } else { self.object[lane] };
-            self.primitive[lane] = if is_kept { hits.primitive[lane] } else { self.primitive[lane] };
             t_max[lane] = if is_kept { t } else { t_max[lane] };
             up_to[lane] = if is_kept { t.next_up() } else { up_to[lane] };
         }

@@ -239,8 +239,7 @@ impl Object {
         if wanted.count_ones() >= TOGETHER
             && let Some(nearest) = self.nearest_on_shape(world.level, rays, &rays.t_max)
         {
-            return (0..LANES).fold(0, |hit, lane| hit | u32::from(nearest.t[lane] < f64::INFINITY) << lane)
-                & wanted;
+            return nearest.lanes() & wanted;
         }
         bits(wanted)
             .filter(|&lane| {

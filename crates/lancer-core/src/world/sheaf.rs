@@ -18,8 +18,8 @@ pub(super) struct Sheaf {
 }
 
 impl Sheaf {
-    /// Around the rays `wanted`, of which there is one, each up to its `t_max`. Those with a coordinate that is no number do not count: they
-    /// meet nothing.
+    /// Around the rays `wanted`, of which there is one, each up to its `t_max`. Those with a coordinate that is no number
+    /// do not count: they meet nothing.
     #[inline(always)]
     pub(super) fn around<S: Simd>(simd: S, rays: &RayPacket, t_max: &[f64; LANES], wanted: u32) -> Self {
         Self {

@@ -154,8 +154,8 @@ impl TriangleTree {
         })
     }
 
-    /// The nearest hits of the rays `wanted` of a packet, and of no others, each as [`TriangleTree::intersect`] would find it. They have been
-    /// made ready for bounds that hold those of the tree.
+    /// The nearest hits of the rays `wanted` of a packet, and of no others, each as [`TriangleTree::intersect`] would find
+    /// it. They have been made ready for bounds that hold those of the tree.
     pub(crate) fn intersect_packet(&self, rays: &ReadyRays, wanted: u32) -> Hits {
         let (mut hits, left_over) =
             dispatch!(self.level, simd => packet::intersect(simd, self, rays, wanted));

@@ -1,6 +1,7 @@
 //! A ray in `f32`, with bounds on what that loses.
 
 use crate::geometry::{Bounds, DVec3, Ray};
+use crate::shape::triangle::widened;
 
 /// Half the distance from 1 to the next `f32`: the relative error of one operation.
 pub(super) const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;
@@ -204,9 +205,4 @@ fn safe_inverse(direction: DVec3) -> DVec3 {
 #[inline(always)]
 pub(super) fn narrowed(v: DVec3) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
-}
-
-#[inline(always)]
-pub(super) fn widened([x, y, z]: [f32; 3]) -> DVec3 {
-    DVec3::new(f64::from(x), f64::from(y), f64::from(z))
 }
